@@ -56,6 +56,7 @@ class CoupledJoint final : public Joint {
     const std::string reason = index_ == 0 ? axes_->refusal(group) : std::string();
     return reason.empty() ? reason : who() + ": " + reason;
   }
+  drive::ProcedureKind stoppedBy() const override { return axes_->stoppedBy(); }
   std::string trouble(std::uint32_t) const override { return who() + ": " + axes_->trouble(); }
   std::uint32_t noticeCount() const override { return axes_->noticeCount(); }
   [[nodiscard]] bool give(double position) override { return axes_->give(index_, position); }
@@ -331,6 +332,16 @@ std::string CoupledAxes::refusal(const std::string& group) const {
   }
   if (!driving_ && !axesRest()) return "its axes are being brought to rest: wait until they stand";
   return {};
+}
+
+/// What stops both sides of a gantry because of one of them was not called by anybody.
+drive::ProcedureKind CoupledAxes::stoppedBy() const {
+  drive::ProcedureKind by = drive::ProcedureKind::none;
+  for (const AxisUnit* unit : units_) {
+    if (!stopped_.empty() || inFault(unit->axis)) return drive::ProcedureKind::none;
+    if (by == drive::ProcedureKind::none) by = stopCalledOn(unit->axis);
+  }
+  return by;
 }
 
 std::string CoupledAxes::trouble() const {

@@ -55,6 +55,7 @@ class CoupledAxes {
   bool ready() const;
   bool late() const;
   std::string refusal(const std::string& group) const;
+  drive::ProcedureKind stoppedBy() const;
   std::string trouble() const;
   std::uint32_t noticeCount() const;
   void follow(const std::string* group);

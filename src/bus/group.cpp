@@ -13,10 +13,6 @@ namespace {
 
 using motion::TrajectoryErrorCode;
 
-TrajectoryOutcome refused(TrajectoryErrorCode code, const std::string& why) {
-  return {code, why, TrajectoryEnd::refused, {}};
-}
-
 // How long a trajectory that ends in motion goes on, for the next may be late a little.
 constexpr double kCoast = 0.02;  // s
 constexpr double kCoastCycles = 3.0;
@@ -79,7 +75,7 @@ std::string Group::tornApart(const std::vector<Joint*>& joints) const {
     for (const Joint* other : joints_) {
       const bool named = std::find(joints.begin(), joints.end(), other) != joints.end();
       if (named || other->coupling() != joint->coupling()) continue;
-      return config_.name + ": refused: " + joint->who() + " is named without " + other->name() +
+      return joint->who() + " is named without " + other->name() +
              ", which the same axes move: name both";
     }
   }
@@ -131,6 +127,10 @@ motion::TrajectoryRules Group::rulesOf(const TrajectoryCommand& command) const {
   return rules;
 }
 
+TrajectoryOutcome Group::refuse(TrajectoryErrorCode code, const std::string& why) const {
+  return {code, config_.name + ": trajectory refused: " + why, TrajectoryEnd::refused, {}};
+}
+
 TrajectoryOutcome Group::start(const TrajectoryCommand& command, Time now) {
   std::vector<Joint*> joints;
   std::vector<motion::Joint> descriptions;
@@ -139,20 +139,17 @@ TrajectoryOutcome Group::start(const TrajectoryCommand& command, Time now) {
   if (stops && command.joints.empty()) return startStop(command, joints_, now);
   const auto found =
       motion::matchJoints(descriptions_, command.joints, config_.allow_partial_joints_goal);
-  if (!found) return refused(TrajectoryErrorCode::invalid_joints, found.error().message);
+  if (!found) return refuse(TrajectoryErrorCode::invalid_joints, found.error().message);
   for (const motion::JointPlace& named : *found) {
     joints.push_back(joints_[named.joint]);
     descriptions.push_back(descriptions_[named.joint]);
     places.push_back(named.place);
   }
   const std::string torn = tornApart(joints);
-  if (!torn.empty()) return refused(TrajectoryErrorCode::invalid_joints, torn);
+  if (!torn.empty()) return refuse(TrajectoryErrorCode::invalid_joints, torn);
   if (stops) return startStop(command, joints, now);
   const std::string why_not = refusal(joints);
-  if (!why_not.empty()) {
-    return refused(TrajectoryErrorCode::invalid_goal,
-                   config_.name + ": trajectory refused: " + why_not);
-  }
+  if (!why_not.empty()) return refuse(TrajectoryErrorCode::invalid_goal, why_not);
   if (runs_.empty()) {
     clock_.set(now);
     starts_ = true;
@@ -166,7 +163,7 @@ TrajectoryOutcome Group::start(const TrajectoryCommand& command, Time now) {
   for (const Joint* joint : joints) from.push_back(commandedAt(*joint, start.begin()));
   auto trajectory = motion::Trajectory::create(descriptions, from, reorder(command.points, places),
                                                start, rulesOf(command));
-  if (!trajectory) return refused(trajectory.error().code, trajectory.error().message);
+  if (!trajectory) return refuse(trajectory.error().code, trajectory.error().message);
   TrajectoryOutcome accepted{TrajectoryErrorCode::successful,
                              config_.name + ": trajectory accepted"};
   accepted.passed_points = command.start_time ? trajectory->droppedPoints() : 0;
@@ -335,11 +332,15 @@ const std::vector<TrajectoryOutcome>& Group::step(Time now) {
 void Group::stopFailed() {
   std::optional<TrajectoryOutcome> failure;
   for (const TrajectoryRun& run : runs_) {
-    if (!failure && run.following()) failure = run.failure();
+    if (!failure && run.following()) failure = run.failure(clock_.time());
   }
   if (!failure) return;
-  for (TrajectoryRun& run : runs_) stop(run, *failure);
-  ended_.push_back(std::move(*failure));
+  for (TrajectoryRun& run : runs_) {
+    stop(run, *failure);
+    if (run.stopping()) run.hasten();
+  }
+  // A stop that was called is told when the joints stand.
+  if (failure->end == TrajectoryEnd::failed) ended_.push_back(std::move(*failure));
 }
 
 void Group::stepRun(TrajectoryRun& run, Time now) {

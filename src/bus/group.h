@@ -64,6 +64,7 @@ class Group {
   /// Where a joint is when the clock shows `time`, if nothing new begins before.
   motion::MotionState commandedAt(const Joint& joint, Time time) const;
   motion::TrajectoryRules rulesOf(const TrajectoryCommand& command) const;
+  TrajectoryOutcome refuse(motion::TrajectoryErrorCode code, const std::string& why) const;
   TrajectoryOutcome startStop(const TrajectoryCommand& command, const std::vector<Joint*>& joints,
                               Time now);
   void add(TrajectoryRun run, Time now);

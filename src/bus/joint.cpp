@@ -33,6 +33,7 @@ class AxisJoint final : public Joint {
   bool goesOn(std::uint32_t breaks) const override { return ready() && sent().breaks() == breaks; }
   bool late() const override { return axis().late(); }
   std::string refusal(const std::string& group) const override;
+  drive::ProcedureKind stoppedBy() const override { return stopCalledOn(axis()); }
   std::string trouble(std::uint32_t told_before) const override;
   std::uint32_t noticeCount() const override { return axis().noticeCount(); }
   [[nodiscard]] bool give(double position) override { return unit_->axis.setTarget(position); }
@@ -87,6 +88,17 @@ std::string AxisJoint::trouble(std::uint32_t told_before) const {
 }
 
 }  // namespace
+
+bool inFault(const drive::Axis& axis) {
+  const drive::State state = axis.state().state;
+  return state == drive::State::fault || state == drive::State::fault_reaction_active;
+}
+
+/// An axis that was ready has had another procedure after each that stops: the last one tells.
+drive::ProcedureKind stopCalledOn(const drive::Axis& axis) {
+  const drive::ProcedureKind last = axis.procedure().kind;
+  return drive::stops(last) && !inFault(axis) ? last : drive::ProcedureKind::none;
+}
 
 const drive::ProcedureStatus* runningOn(const drive::Axis& axis) {
   return axis.procedure().running ? &axis.procedure() : nullptr;

@@ -64,6 +64,11 @@ class Joint {
   }
   /// What that is, in words, and how to stop it: "home runs, which halt stops". @pre occupied()
   std::string occupation() const;
+  /// The procedure that was called to stop it, last of all and since it was ready; none: nothing of
+  /// that kind, or it is in fault, which weighs more.
+  virtual drive::ProcedureKind stoppedBy() const = 0;
+  /// Such a one has not ended.
+  bool beingStopped() const { return procedure() != nullptr && drive::stops(procedure()->kind); }
   /// Why it does not do what it is told any more, in words. @param told_before noticeCount() then
   virtual std::string trouble(std::uint32_t told_before) const = 0;
   virtual std::uint32_t noticeCount() const = 0;
@@ -103,6 +108,10 @@ class Joint {
   double stop_deceleration_;
 };
 
+/// In fault, or on its way there.
+bool inFault(const drive::Axis& axis);
+/// See Joint::stoppedBy().
+drive::ProcedureKind stopCalledOn(const drive::Axis& axis);
 /// The procedure that runs on an axis; nullptr: none.
 const drive::ProcedureStatus* runningOn(const drive::Axis& axis);
 /// Why an axis cannot follow trajectories, whatever group asks; empty if it can.

@@ -17,6 +17,14 @@ constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
 constexpr Duration kSettles = std::chrono::milliseconds(400);  // at least, after a stop
 constexpr double kArrived = 0.01;  // rad or m; "reached" where no goal tolerance is configured
 
+/// "0.1 rad".
+std::string distance(const Joint& joint, double way) {
+  return motion::lengthText(way, joint.description().unit);
+}
+
+/// "0.1 rad/s".
+std::string speed(const Joint& joint, double velocity) { return distance(joint, velocity) + "/s"; }
+
 }  // namespace
 
 std::string slowedText(const motion::Trajectory& trajectory) {
@@ -157,11 +165,13 @@ void TrajectoryRun::end(const TrajectoryOutcome& outcome) {
 
 void TrajectoryRun::noteDropped() {
   for (Member& member : members_) {
-    if (!member.joint->goesOn(member.breaks)) member.dropped = true;
+    if (member.dropped || member.joint->goesOn(member.breaks)) continue;
+    member.dropped = true;
+    member.stopped_by = member.joint->stoppedBy();
   }
 }
 
-std::optional<TrajectoryOutcome> TrajectoryRun::failure() const {
+std::optional<TrajectoryOutcome> TrajectoryRun::failure(Time time) const {
   if (refused_ != nullptr) {  // which ends the axis' set-points, too
     return TrajectoryOutcome{TrajectoryErrorCode::path_tolerance_violated,
                              group_->name + ": trajectory stopped: " + refused_->who() +
@@ -170,7 +180,7 @@ std::optional<TrajectoryOutcome> TrajectoryRun::failure() const {
                              TrajectoryEnd::failed, refused_->name()};
   }
   if (auto failed = axisFailure()) return failed;
-  return pathFailure();
+  return pathFailure(time);
 }
 
 std::optional<TrajectoryOutcome> TrajectoryRun::axisFailure() const {
@@ -182,11 +192,23 @@ std::optional<TrajectoryOutcome> TrajectoryRun::axisFailure() const {
     if (!std::all_of(members_.begin(), members_.end(), dropped)) return std::nullopt;
     left = "no joint is left to follow it: ";
   }
-  return blame(TrajectoryErrorCode::path_tolerance_violated, *first, kNothing,
-               ": trajectory stopped: " + left + first->joint->trouble(first->notices));
+  const auto failed = std::find_if(members_.begin(), members_.end(), [](const Member& member) {
+    return member.dropped && member.stopped_by == drive::ProcedureKind::none;
+  });
+  if (failed == members_.end()) return calledStop(*first);
+  return blame(TrajectoryErrorCode::path_tolerance_violated, *failed, kNothing,
+               ": trajectory stopped: " + left + failed->joint->trouble(failed->notices));
 }
 
-std::optional<TrajectoryOutcome> TrajectoryRun::pathFailure() const {
+TrajectoryOutcome TrajectoryRun::calledStop(const Member& member) const {
+  return {TrajectoryErrorCode::successful,
+          group_->name + ": stopped: " + member.joint->who() + ": " +
+              drive::toString(member.stopped_by) + " was called",
+          TrajectoryEnd::stopped,
+          {}};
+}
+
+std::optional<TrajectoryOutcome> TrajectoryRun::pathFailure(Time time) const {
   for (const Member& member : members_) {
     const double tolerance = member.tolerance.trajectory;
     if (tolerance <= 0.0 || member.dropped) continue;
@@ -194,9 +216,10 @@ std::optional<TrajectoryOutcome> TrajectoryRun::pathFailure() const {
     const double error = std::abs(positions_[member.place] - joint.position());
     if (began_ < joint.stamp() && error > tolerance) {
       return blame(TrajectoryErrorCode::path_tolerance_violated, member, error,
-                   ": trajectory stopped: " + joint.who() + " is " +
-                       motion::lengthText(error, joint.description().unit) +
-                       " off its path, the tolerance is " + motion::formatNumber(tolerance));
+                   ": trajectory stopped: " + joint.who() + " is " + distance(joint, error) +
+                       " off its path at " +
+                       motion::formatNumber(toSeconds(time - trajectory_->startTime())) +
+                       " s, the tolerance is " + distance(joint, tolerance));
     }
   }
   return std::nullopt;
@@ -232,7 +255,9 @@ std::optional<TrajectoryOutcome> TrajectoryRun::standstill(Time now) {
     if (std::exchange(member.given_up, given_up) != given_up) member.rest.reset();
     member.rest.update(member.joint->position(), member.joint->stamp());
     const bool others = occupied(member);
-    rest_commanded = rest_commanded && (others || member.dropped || member.joint->sent().atRest());
+    const bool commanded =
+        member.dropped ? !member.joint->beingStopped() : member.joint->sent().atRest();
+    rest_commanded = rest_commanded && (others || commanded);
     if (others || (restless == nullptr && !rests(member))) restless = &member;
   }
   if (!rest_commanded) commanded_rest_.reset();
@@ -244,8 +269,7 @@ std::optional<TrajectoryOutcome> TrajectoryRun::standstill(Time now) {
   }
   if (occupied(*restless)) return notStopped(*restless);
   TrajectoryOutcome outcome = outcome_;
-  outcome.message +=
-      ", but " + restless->joint->who() + " still moves; see whether it swings or is pushed";
+  outcome.message += ", but " + stillMoves(*restless) + ", " + restAsked(*restless);
   return outcome;
 }
 
@@ -269,22 +293,38 @@ bool TrajectoryRun::rests(const Member& member) const {
 }
 
 TrajectoryOutcome TrajectoryRun::restlessness(const Member& member) const {
-  const Joint& joint = *member.joint;
-  return blame(
-      TrajectoryErrorCode::goal_tolerance_violated, member, kNothing,
-      ": goal missed: " + joint.who() + " still moves " + motion::formatNumber(goalTime()) +
-          " s after the end, its stopped_velocity_tolerance is " +
-          motion::formatNumber(group_->stopped_velocity_tolerance) + " " +
-          motion::toString(joint.description().unit) +
-          "/s; see whether it swings or is pushed, or give a larger goal_time or tolerance");
+  return blame(TrajectoryErrorCode::goal_tolerance_violated, member, kNothing,
+               ": goal missed: " + stillMoves(member) + " " + motion::formatNumber(goalTime()) +
+                   " s after the end, " + restAsked(member) +
+                   ", or give a larger goal_time or tolerance");
+}
+
+std::string TrajectoryRun::stillMoves(const Member& member) const {
+  const double velocity = std::abs(member.rest.velocity());
+  return member.joint->who() + " still moves" +
+         (std::isfinite(velocity) ? " at " + speed(*member.joint, velocity) : std::string());
+}
+
+std::string TrajectoryRun::restAsked(const Member& member) const {
+  return "its stopped_velocity_tolerance is " +
+         speed(*member.joint, group_->stopped_velocity_tolerance) +
+         "; see whether it swings or is pushed";
 }
 
 std::optional<TrajectoryOutcome> TrajectoryRun::arrival(Time time) {
+  const Member* stopped = nullptr;
   for (Member& member : members_) {
     member.rest.update(member.joint->position(), member.joint->stamp());
     if (!member.dropped) continue;
+    stopped = &member;
+    if (member.stopped_by != drive::ProcedureKind::none) continue;
     return blame(TrajectoryErrorCode::goal_tolerance_violated, member, kNothing,
                  ": goal missed: " + member.joint->trouble(member.notices));
+  }
+  if (stopped != nullptr) {  // the others are at their goals: nothing is to be stopped any more
+    outcome_ = calledStop(*stopped);
+    phase_ = Phase::stopping;
+    return std::nullopt;
   }
   const bool late = time >= trajectory_->endTime() + fromSeconds(goalTime());
   std::string away;  // without a tolerance that is no failure, but it is told
@@ -298,12 +338,11 @@ std::optional<TrajectoryOutcome> TrajectoryRun::arrival(Time time) {
     if (arrived && rests(member)) continue;
     if (!late) return std::nullopt;
     if (arrived) return restlessness(member);
-    const std::string where =
-        joint.who() + " is " + motion::lengthText(error, joint.description().unit) + " away";
+    const std::string where = joint.who() + " is " + distance(joint, error) + " away";
     if (judged) {
       return blame(TrajectoryErrorCode::goal_tolerance_violated, member, error,
-                   ": goal missed: " + where + " after " + motion::formatNumber(goalTime()) +
-                       " s, the tolerance is " + motion::formatNumber(tolerance));
+                   ": goal missed: " + where + " " + motion::formatNumber(goalTime()) +
+                       " s after the end, the tolerance is " + distance(joint, tolerance));
     }
     append(away, where, ", ");
     if (!(error <= reached.off)) {

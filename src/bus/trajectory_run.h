@@ -77,13 +77,15 @@ class TrajectoryRun {
   /// A joint that was not ready for a while, or whose set-points were ended by anything else
   /// (another zero of its positions, a motor that stands), is not where this was planned from.
   void noteDropped();
-  /// Why its joints are to stop. @pre following()
-  std::optional<TrajectoryOutcome> failure() const;
+  /// Why its joints are to stop, with the end `failed`, or `stopped` where a procedure was called
+  /// that stops one of them. @param time of the group's clock. @pre following()
+  std::optional<TrajectoryOutcome> failure(Time time) const;
   /// The goal was sent already: given once more, the set-points are at rest there. @pre following()
   bool atGoal(Time time) const;
   /// Gives the joints their set-points. @pre following()
   void follow(Time time);
-  /// How it ended; absent: the goal is waited for still. @pre following(), atGoal()
+  /// How it ended; absent: the goal is waited for still, or it stops, for a procedure was called
+  /// that stopped one of its joints on the way. @pre following(), atGoal()
   std::optional<TrajectoryOutcome> arrival(Time time);
   /// Its joints stand, as was commanded and as their motors are measured, or one that should does
   /// not: what it has come to. @pre stopping()
@@ -98,6 +100,7 @@ class TrajectoryRun {
     std::uint32_t breaks, notices, given_up;  ///< of the joint, as it was taken
     bool dropped;                             ///< it fell out of operation under way
     drive::Standstill rest;  ///< of the motor, since the goal was sent or it is stopped
+    drive::ProcedureKind stopped_by = drive::ProcedureKind::none;  ///< what it was dropped for
   };
 
   /// nullptr: it has none such, or that fell out.
@@ -107,12 +110,18 @@ class TrajectoryRun {
   double goalTime() const { return order_.tolerances.goal_time.value_or(group_->goal_time); }
   bool is(Phase phase) const { return phase_ == phase && !members_.empty(); }
   std::optional<TrajectoryOutcome> axisFailure() const;
-  std::optional<TrajectoryOutcome> pathFailure() const;
+  /// How it ends where a member was dropped because a procedure was called that stops it.
+  TrajectoryOutcome calledStop(const Member& member) const;
+  std::optional<TrajectoryOutcome> pathFailure(Time time) const;
   bool rests(const Member& member) const;
   /// It is to be stopped, and something else than this group moves it, or may.
   bool occupied(const Member& member) const;
   TrajectoryOutcome notStopped(const Member& member) const;
   TrajectoryOutcome restlessness(const Member& member) const;
+  /// "elbow still moves at 0.3 rad/s".
+  std::string stillMoves(const Member& member) const;
+  /// "its stopped_velocity_tolerance is 0.01 rad/s; see whether it swings or is pushed".
+  std::string restAsked(const Member& member) const;
   TrajectoryOutcome blame(motion::TrajectoryErrorCode code, const Member& member, double off,
                           const std::string& text) const;
 

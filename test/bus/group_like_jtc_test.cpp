@@ -133,7 +133,8 @@ struct RestTest : LikeJtc {
     config.groups[0].tolerances["elbow"].goal = 0.05;
     return config;
   }
-  /// The elbow's motor swings about its set-point by so many counts (100000 are one rad).
+  /// The elbow's motor swings about its set-point by so many counts (100000 are one rad): by 1000
+  /// with 5 rad/s, 0.02 rad in each cycle of 4 ms.
   void swing(int counts, Duration duration) {
     for (const Time end = world.now + duration; world.now < end; world.run(test::kPeriod)) {
       world.drives[1].disturbance = world.drives[1].disturbance > 0 ? -counts : counts;
@@ -162,7 +163,7 @@ TEST_F(RestTest, AMotorThatGoesOnMovingHasMissedItsGoal) {
   EXPECT_EQ(ended->front().joint, "elbow");
   EXPECT_EQ(
       ended->front().message,
-      "arm: goal missed: elbow still moves 0.4 s after the end, its "
+      "arm: goal missed: elbow still moves at 5 rad/s 0.4 s after the end, its "
       "stopped_velocity_tolerance is 0.01 rad/s; see whether it swings or is pushed, or give a "
       "larger goal_time or tolerance");
 }
@@ -198,7 +199,8 @@ TEST_F(RestTest, WhatIsCancelledEndsAllTheSameWhereAMotorDoesNotComeToRest) {
   ASSERT_EQ(ended->size(), 1u);
   EXPECT_EQ(ended->front().end, TrajectoryEnd::stopped);
   EXPECT_EQ(ended->front().message,
-            "arm: cancelled, but elbow still moves; see whether it swings or is pushed");
+            "arm: cancelled, but elbow still moves at 5 rad/s, its stopped_velocity_tolerance is "
+            "0.01 rad/s; see whether it swings or is pushed");
 }
 
 // A halt takes the joint from the trajectory; the motor does not stand for that.

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <random>
+#include <string>
 
 #include "bus/group_scene.h"
 
@@ -12,7 +13,9 @@ namespace cia402::bus {
 namespace {
 
 using namespace std::chrono_literals;
+using drive::ProcedureKind;
 using test::kPeriod;
+using test::Outcomes;
 using test::RobotWorld;
 
 constexpr double kFarthest = 2.9;  // the limit is 3 rad
@@ -119,6 +122,109 @@ TEST_F(AnyGentleStop, NeverMakesAJointFasterEither) {
   play(150);
   EXPECT_GT(moved, 75);
   EXPECT_GT(stopped_in_motion, 50);
+}
+
+/// A procedure that stops takes the joints from their trajectory.
+struct CalledStop : test::GroupScene {
+  explicit CalledStop(const config::RobotConfig& config = test::testRobot()) : GroupScene(config) {}
+  /// Its ramp from 0.375 rad/s takes 0.6 s.
+  static config::RobotConfig slow() {
+    config::RobotConfig config = test::testRobot();
+    for (drive::AxisConfig& axis : config.axes) axis.limits.acceleration = 0.6;
+    return config;
+  }
+  Outcomes start(double goal = 1.0, double seconds = 1.0) {
+    const Outcomes ended = send(world.trajectory("arm", {{{goal, -0.5 * goal}, seconds}}));
+    world.run(fromSeconds(seconds / 2.0));
+    return ended;
+  }
+  /// It was told to stop: that is told once, when both motors stand.
+  void expectStopped(const Outcomes& ended, const std::string& message) {
+    EXPECT_TRUE(ended->empty()) << "they move";
+    ASSERT_TRUE(world.runUntil([&] { return !ended->empty(); }, 3s));
+    EXPECT_EQ(ended->front().end, TrajectoryEnd::stopped);
+    EXPECT_EQ(ended->front().code, motion::TrajectoryErrorCode::successful);
+    EXPECT_EQ(ended->front().message, message);
+    const int shoulder = position(0), elbow = position(1);
+    world.run(1s);
+    EXPECT_EQ(position(0), shoulder);
+    EXPECT_EQ(position(1), elbow);
+    EXPECT_EQ(ended->size(), 1u);
+    EXPECT_EQ(world.eventsWith("arm: "), 1u) << world.allEvents();
+  }
+};
+
+TEST_F(CalledStop, IsToldAsSuchOnceTheMotorsStand) {
+  for (const ProcedureKind kind :
+       {ProcedureKind::halt, ProcedureKind::quick_stop, ProcedureKind::disable}) {
+    ASSERT_TRUE(world.call(ProcedureKind::enable).success);
+    const double way = position(0) < 50000 ? 1.0 : 0.0;
+    const Outcomes ended = start(way);
+    world.events.clear();
+    (void)world.begin(kind);
+    expectStopped(ended, std::string("arm: stopped: shoulder: ") + toString(kind) + " was called");
+  }
+}
+
+TEST_F(CalledStop, OfOneJointStopsTheOthers) {
+  const Outcomes ended = start();
+  world.events.clear();
+  (void)world.begin(ProcedureKind::halt, "elbow");
+  expectStopped(ended, "arm: stopped: elbow: halt was called");
+  EXPECT_LT(position(0), 70000) << "its ramp from the middle of the way";
+}
+
+TEST_F(CalledStop, EndsWhatWaitsBehindWhatItStops) {
+  const Outcomes runs = start();
+  TrajectoryCommand next = world.trajectory("arm", {{{0.0, 0.0}, 1.0}});
+  next.start_time = world.now + 300ms;
+  const Outcomes waits = send(std::move(next));
+  (void)world.begin(ProcedureKind::halt);
+  world.run(2s);
+  ASSERT_EQ(runs->size(), 1u);
+  EXPECT_EQ(runs->front().end, TrajectoryEnd::stopped);
+  ASSERT_EQ(waits->size(), 1u);
+  EXPECT_EQ(waits->front().end, TrajectoryEnd::stopped);
+}
+
+/// The others go on where one that stops does not stop the group.
+struct LonelyCalledStop : CalledStop {
+  LonelyCalledStop() : CalledStop(robot()) {}
+  static config::RobotConfig robot() {
+    config::RobotConfig config = test::testRobot();
+    config.groups[0].stop_group_on_fault = false;
+    return config;
+  }
+};
+
+TEST_F(LonelyCalledStop, OfOneJointIsToldAtTheGoalOfTheOthers) {
+  const Outcomes ended = start();
+  world.events.clear();
+  (void)world.begin(ProcedureKind::halt, "elbow");
+  expectStopped(ended, "arm: stopped: elbow: halt was called");
+  EXPECT_EQ(position(0), 100000);
+}
+
+TEST_F(LonelyCalledStop, IsToldAlsoOfAJointThatWasEnabledAgainMeanwhile) {
+  const Outcomes ended = start();
+  world.events.clear();
+  ASSERT_TRUE(world.call(ProcedureKind::disable, "elbow").success);
+  ASSERT_TRUE(world.call(ProcedureKind::enable, "elbow").success);
+  expectStopped(ended, "arm: stopped: elbow: disable was called");
+}
+
+struct SlowCalledStop : CalledStop {
+  SlowCalledStop() : CalledStop(slow()) {}
+};
+
+TEST_F(SlowCalledStop, IsWaitedForAsLongAsItTakes) {
+  const Outcomes ended = start(2.0, 8.0);
+  world.events.clear();
+  (void)world.begin(ProcedureKind::halt);
+  const Time called = world.now;
+  ASSERT_TRUE(world.runUntil([&] { return !ended->empty(); }, 3s));
+  EXPECT_GT(world.now - called, 600ms) << "0.375 rad/s by 0.6 rad/s^2";
+  EXPECT_EQ(ended->front().message, "arm: stopped: shoulder: halt was called");
 }
 
 }  // namespace

@@ -15,6 +15,7 @@ using motion::TrajectoryErrorCode;
 using test::RobotWorld;
 using testing::AllOf;
 using testing::HasSubstr;
+using testing::MatchesRegex;
 using namespace std::chrono_literals;
 
 struct GroupToleranceTest : testing::Test {
@@ -64,9 +65,22 @@ TEST_F(GroupToleranceTest, EndsWithMinus4OffThePathAndStopsByARamp) {
   const TrajectoryOutcome outcome = follow(group);
   EXPECT_EQ(static_cast<int>(outcome.code), -4);
   EXPECT_THAT(outcome.message, AllOf(HasSubstr("test: trajectory stopped: elbow is 0.05"),
-                                     HasSubstr("rad off its path, the tolerance is 0.05")));
+                                     HasSubstr("s, the tolerance is 0.05 rad")));
   EXPECT_LT(took, 600ms);
   EXPECT_LT(world.drives[0].radians(), 0.3);
+}
+
+TEST_F(GroupToleranceTest, AFailureOnTheWayTellsWhenItWasAndByHowMuch) {
+  Group group = make({0.05, 0.01});
+  ASSERT_EQ(start(group, 0.5, -0.5).code, TrajectoryErrorCode::successful);
+  for (const Time until = world.now + 300ms; world.now < until;) {
+    world.run(test::kPeriod);
+    ASSERT_TRUE(group.step(world.now).empty());
+  }
+  world.drives[1].disturbance = 5100;  // 0.051 rad, and what its path takes in two cycles
+  EXPECT_THAT(follow(group).message,
+              MatchesRegex("test: trajectory stopped: elbow is 0\\.05[0-9]* rad off its path at "
+                           "0\\.3[01]?[0-9]* s, the tolerance is 0\\.05 rad"));
 }
 
 TEST_F(GroupToleranceTest, EndsWithMinus5WhenTheGoalIsMissedAfterTheGoalTime) {
@@ -75,8 +89,9 @@ TEST_F(GroupToleranceTest, EndsWithMinus5WhenTheGoalIsMissedAfterTheGoalTime) {
   world.drives[1].disturbance = 2000;  // 0.02 rad off
   const TrajectoryOutcome outcome = follow(group);
   EXPECT_EQ(static_cast<int>(outcome.code), -5);
-  EXPECT_EQ(outcome.message,
-            "test: goal missed: elbow is 0.02 rad away after 0.5 s, the tolerance is 0.01");
+  EXPECT_EQ(
+      outcome.message,
+      "test: goal missed: elbow is 0.02 rad away 0.5 s after the end, the tolerance is 0.01 rad");
   EXPECT_NEAR(toSeconds(took), 1.5, 0.02);
 }
 

@@ -161,7 +161,7 @@ TEST(Coupling, AHaltOfOneAxisStopsTheOtherOnTheSameWay) {
   EXPECT_TRUE(scene.rests());
   EXPECT_LT(scene.pitch(), 0.4);
   EXPECT_LT(off, 1.5e-3) << "with ramps of their own they would be 3.4e-3 off it";
-  EXPECT_THAT(scene.told(), HasSubstr("wrist: trajectory stopped: pitch (axes m5, m6): m5"));
+  EXPECT_THAT(scene.told(), HasSubstr("wrist: stopped: pitch (axes m5, m6): halt was called"));
   EXPECT_THAT(scene.move({0.0, 0.0}, 2s).message,
               AllOf(HasSubstr("m5 (node 1): halted"), HasSubstr("enable")));
   ASSERT_TRUE(scene.procedure(ProcedureKind::enable).success);
@@ -223,8 +223,8 @@ TEST(Coupling, JointsOfOneCouplingAreNamedTogether) {
   const auto answer = scene.call(command);
   EXPECT_EQ(answer.code, TrajectoryErrorCode::invalid_joints);
   EXPECT_EQ(answer.message,
-            "wrist: refused: roll (axes m5, m6) is named without pitch, which the same axes move: "
-            "name both");
+            "wrist: trajectory refused: roll (axes m5, m6) is named without pitch, which the same "
+            "axes move: name both");
 }
 
 TEST(Coupling, ServicesOfAGroupAreForTheAxesOfItsJoints) {

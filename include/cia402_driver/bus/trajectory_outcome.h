@@ -15,7 +15,8 @@ namespace cia402::bus {
 enum class TrajectoryEnd : std::uint8_t {
   reached,   ///< its goal, within the tolerances where there are some
   replaced,  ///< a newer one took over, or was accepted before this one began
-  stopped,   ///< by an empty trajectory, by what stops all motion, or by the end of the program
+  stopped,   ///< by an empty trajectory, by halt, quick_stop or disable of one of its joints, by
+             ///< what stops all motion, or by the end of the program
   refused,   ///< it was never followed
   failed,    ///< a joint left its path, fell out of operation, or missed the goal
 };

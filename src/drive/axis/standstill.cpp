@@ -9,12 +9,16 @@ void Standstill::anchor(double position, Time stamp, bool moved) {
     still_ = !moved;
     moving_ = moved;
     if (still_) still_from_ = anchored_;
+    velocity_ = (position - anchor_) / toSeconds(stamp - anchored_);
   }
   started_ = true;
   anchor_ = position;
   anchored_ = stamp;
 }
 
-void Standstill::reset() { started_ = still_ = moving_ = false; }
+void Standstill::reset() {
+  started_ = still_ = moving_ = false;
+  velocity_ = std::numeric_limits<double>::quiet_NaN();
+}
 
 }  // namespace cia402::drive

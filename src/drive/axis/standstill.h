@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cmath>
+#include <limits>
 
 #include "cia402_driver/common/time.h"
 
@@ -31,6 +32,8 @@ class Standstill {
   Time stillFrom() const { return still_from_; }
   /// Has been seen to move; false, too, while a first window is not full yet.
   bool moving() const { return moving_; }
+  /// Mean over the last window, or until it was left, rad/s or m/s; NaN before there was one.
+  double velocity() const { return velocity_; }
   /// Two places no farther apart are one, rad or m.
   double tolerance() const { return tolerance_; }
 
@@ -39,6 +42,7 @@ class Standstill {
 
   double tolerance_;  ///< rad or m within a window
   double anchor_ = 0.0;
+  double velocity_ = std::numeric_limits<double>::quiet_NaN();
   Time anchored_{}, still_from_{};
   bool started_ = false, still_ = false, moving_ = false;
 };
