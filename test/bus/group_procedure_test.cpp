@@ -117,6 +117,36 @@ TEST_F(GroupProcedure, WhatSomebodyStoppedMeanwhileIsLeftAlone) {
   EXPECT_TRUE(world.drives[0].enabled()) << "who halted it wants it held";
 }
 
+TEST_F(GroupProcedure, RecoverBringsItsFaultedAxesBackAndLeavesAllOthersAlone) {
+  ASSERT_TRUE(world.call(ProcedureKind::enable).success);
+  world.drives[1].fault(0x8611);
+  world.drives[2].fault(0x8611);
+  world.run(200ms);
+  const std::size_t before = world.sentWithId(0x201).size();
+  const Answer answer = call(ProcedureKind::recover);
+  EXPECT_TRUE(answer.success) << answer.message;
+  EXPECT_THAT(answer.message, HasSubstr("recover done on 2 of 2 axes"));
+  EXPECT_EQ(enabled(), (States{true, true, false}));
+  EXPECT_EQ(world.drives[2].statusword & 0x4F, 0x08) << "it is in fault, and not of the group";
+  const auto sent = world.sentWithId(0x201);
+  ASSERT_GT(sent.size(), before);
+  for (std::size_t i = before; i < sent.size(); ++i) {
+    EXPECT_EQ(sent[i].frame.data[0], 0x0F) << "it was enabled, and stays so";
+  }
+}
+
+TEST_F(GroupProcedure, RecoverNamesTheAxisThatDoesNotComeBack) {
+  ASSERT_TRUE(world.call(ProcedureKind::enable).success);
+  world.drives[1].fault(0x8611);
+  world.drives[1].deaf_to_controlword = true;
+  world.run(200ms);
+  const Answer answer = call(ProcedureKind::recover);
+  EXPECT_FALSE(answer.success);
+  EXPECT_THAT(answer.message,
+              AllOf(HasSubstr("recover done on 1 of 2 axes"), HasSubstr("elbow (node 2)")));
+  EXPECT_EQ(enabled(), (States{true, false, true}));
+}
+
 TEST_F(GroupProcedure, HomesThoseThatHaveAHoming) {
   ASSERT_TRUE(world.call(ProcedureKind::enable).success);
   const Answer answer = call(ProcedureKind::home);
