@@ -7,7 +7,7 @@ those of ros-controls/control_msgs for ROS Kinetic to Noetic.
 """
 import unittest
 
-from control_msgs import msg
+from control_msgs import msg, srv
 
 SUMS = {
     "FollowJointTrajectoryAction": "bc4f9b743838566551c0390c65f1a248",
@@ -21,20 +21,25 @@ SUMS = {
     # The same text as the action's feedback, so the same sum.
     "JointTrajectoryControllerState": "10817c60c2486ef6b33e97dcd87f4474",
 }
+SERVICE_SUMS = {
+    "QueryTrajectoryState": "ec93cdecbd8062d761aa52b7c90cd44b",
+}
 
 
 class ControlMsgs(unittest.TestCase):
     pass
 
 
-def expect_sum(name, md5):
+def expect_sum(kinds, name, md5):
     def test(self):
-        self.assertEqual(getattr(msg, name)._md5sum, md5)
+        self.assertEqual(getattr(kinds, name)._md5sum, md5)
     return test
 
 
-for _name, _md5 in SUMS.items():
-    setattr(ControlMsgs, f"test_{_name}_has_the_md5_sum_of_ros_controls", expect_sum(_name, _md5))
+for _kinds, _sums in ((msg, SUMS), (srv, SERVICE_SUMS)):
+    for _name, _md5 in _sums.items():
+        setattr(ControlMsgs, f"test_{_name}_has_the_md5_sum_of_ros_controls",
+                expect_sum(_kinds, _name, _md5))
 
 if __name__ == "__main__":
     unittest.main()
