@@ -1,6 +1,8 @@
 #!/usr/bin/python3
 # Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 """Goals of follow_joint_trajectory: how they end, and where the joints are then."""
+import statistics
+
 import actionlib
 import rospy
 from actionlib_msgs.msg import GoalID, GoalStatus, GoalStatusArray
@@ -12,20 +14,38 @@ from trajectory_msgs.msg import JointTrajectoryPoint
 
 JOINTS = ["shoulder", "elbow", "wrist", "gripper"]
 ACTION = "/robot/arm/follow_joint_trajectory"
-NEAR, FAR = [-2.0, 0.0, 0.2, 0.1], [-0.8, 0.6, 0.8, 0.5]
+NEAR, MIDDLE, FAR = [-2.0, 0.0, 0.2, 0.1], [-1.4, 0.3, 0.5, 0.3], [-0.8, 0.6, 0.8, 0.5]
+
+
+def point_of(positions, seconds):
+    return JointTrajectoryPoint(positions=positions, velocities=[0.0] * len(positions),
+                                time_from_start=rospy.Duration.from_sec(seconds))
 
 
 def goal_of(positions, seconds, joints=None):
     goal = FollowJointTrajectoryGoal()
     goal.trajectory.joint_names = JOINTS if joints is None else joints
     if positions:
-        goal.trajectory.points.append(JointTrajectoryPoint(
-            positions=positions, velocities=[0.0] * len(positions),
-            time_from_start=rospy.Duration.from_sec(seconds)))
+        goal.trajectory.points.append(point_of(positions, seconds))
     return goal
 
 
-class Action(RobotTest):
+class ActionTest(RobotTest):
+    def make_client(self, action=ACTION):
+        client = actionlib.SimpleActionClient(action, FollowJointTrajectoryAction)
+        self.assertTrue(client.wait_for_server(rospy.Duration.from_sec(DEADLINE)))
+        return client
+
+    def result(self, state, words, client):
+        self.assertTrue(client.wait_for_result(rospy.Duration.from_sec(DEADLINE)))
+        result = client.get_result()
+        self.assertEqual(GoalStatus.to_string(client.get_state()), GoalStatus.to_string(state),
+                         result.error_string)
+        self.assert_words(result.error_string, words)
+        return result
+
+
+class Action(ActionTest):
     @classmethod
     def setUpClass(cls):
         super().setUpClass()
@@ -39,23 +59,11 @@ class Action(RobotTest):
         self.assertEqual(self.finish(goal_of(NEAR, 3.0)).error_code,
                          FollowJointTrajectoryResult.SUCCESSFUL)
 
-    def make_client(self):
-        client = actionlib.SimpleActionClient(ACTION, FollowJointTrajectoryAction)
-        self.assertTrue(client.wait_for_server(rospy.Duration.from_sec(DEADLINE)))
-        return client
-
     def send(self, goal, client=None):
         (client or self.client).send_goal(goal, feedback_cb=self.feedback.append)
 
     def result(self, state, words, client=None):
-        client = client or self.client
-        self.assertTrue(client.wait_for_result(rospy.Duration.from_sec(DEADLINE)))
-        result = client.get_result()
-        self.assertEqual(GoalStatus.to_string(client.get_state()), GoalStatus.to_string(state),
-                         result.error_string)
-        for word in words.split("|"):
-            self.assertIn(word, result.error_string)
-        return result
+        return super().result(state, words, client or self.client)
 
     def finish(self, goal):
         self.send(goal)
@@ -98,6 +106,14 @@ class Action(RobotTest):
                                           fastest.error.velocities):
             self.assertAlmostEqual(error, desired - actual, delta=1e-9)
 
+    def test_tells_of_the_way_at_20_hz(self):
+        self.feedback.clear()
+        self.finish(goal_of(FAR, 2.0))
+        stamps = [feedback.header.stamp.to_sec() for feedback in self.feedback]
+        self.assertGreater(len(stamps), 10)
+        apart = statistics.median(b - a for a, b in zip(stamps, stamps[1:]))
+        self.assertAlmostEqual(apart, 0.05, delta=0.01)
+
     def test_is_taken_in_any_order_of_the_joints(self):
         self.finish(goal_of(FAR[::-1], 2.0, JOINTS[::-1]))
         for joint, place in zip(JOINTS, FAR):
@@ -106,11 +122,11 @@ class Action(RobotTest):
     def test_is_rejected_with_a_code_and_a_reason(self):
         for goal, code, words in (
                 (goal_of(FAR, 2.0, ["shoulder", "elbow", "wrist", "neck"]),
-                 FollowJointTrajectoryResult.INVALID_JOINTS, "neck"),
+                 FollowJointTrajectoryResult.INVALID_JOINTS, "arm: trajectory refused: |neck"),
                 (goal_of([], 0.0, []), FollowJointTrajectoryResult.INVALID_JOINTS,
                  "arm: the goal names no joints"),
                 (goal_of([-0.8, 2.5, 0.8, 0.5], 9.0), FollowJointTrajectoryResult.INVALID_GOAL,
-                 "elbow|2.5")):
+                 "arm: trajectory refused: elbow: |at 9 s|2.5 rad|upper limit 2 rad")):
             self.send(goal)
             self.assertEqual(self.result(GoalStatus.REJECTED, words).error_code, code)
         self.succeed("wrist/disable")
@@ -136,13 +152,65 @@ class Action(RobotTest):
         for joint, place in zip(JOINTS, NEAR):
             self.robot.wait_at(joint, place)
 
+    def test_is_preempted_by_a_trajectory_of_the_topic(self):
+        self.send(goal_of(FAR, 5.0))
+        self.wait_moving()
+        self.robot.follow(JOINTS, [(2.0, NEAR)])
+        self.result(GoalStatus.PREEMPTED, "arm: replaced by a newer trajectory")
+        for joint, place in zip(JOINTS, NEAR):
+            self.robot.wait_at(joint, place)
+
+    def test_takes_over_from_a_trajectory_of_the_topic(self):
+        told = []
+        subscriber = rospy.Subscriber("/robot/arm/command_result", FollowJointTrajectoryResult,
+                                      told.append)
+        self.addCleanup(subscriber.unregister)
+        wait_until(lambda: subscriber.get_num_connections() > 0, "results are heard")
+        self.robot.follow(JOINTS, [(5.0, FAR)])
+        self.wait_moving()
+        self.finish(goal_of(MIDDLE, 2.0))
+        for joint, place in zip(JOINTS, MIDDLE):
+            self.robot.wait_at(joint, place)
+        self.assertEqual(told, [], "of one that was replaced nothing is told")
+
+    def test_waits_for_a_stamp_in_the_future(self):
+        goal = goal_of(FAR, 2.0)
+        goal.trajectory.header.stamp = rospy.Time.now() + rospy.Duration.from_sec(2.0)
+        self.send(goal)
+        wait_until(lambda: self.client.get_state() == GoalStatus.ACTIVE, "it is accepted")
+        while rospy.Time.now() < goal.trajectory.header.stamp - rospy.Duration.from_sec(0.5):
+            self.assertAlmostEqual(self.robot.position("shoulder"), NEAR[0], delta=0.01)
+            rospy.sleep(0.05)
+        self.result(GoalStatus.SUCCEEDED, "goal reached")
+        self.assertGreaterEqual((rospy.Time.now() - goal.trajectory.header.stamp).to_sec(), 2.0)
+        for joint, place in zip(JOINTS, FAR):
+            self.robot.wait_at(joint, place)
+
+    def test_leaves_out_what_a_stamp_in_the_past_has_passed(self):
+        goal = goal_of(NEAR, 4.0)
+        goal.trajectory.points.append(point_of(FAR, 8.0))
+        begun = rospy.Time.now()
+        goal.trajectory.header.stamp = begun - rospy.Duration.from_sec(5.0)
+        self.send(goal)
+        self.result(GoalStatus.SUCCEEDED, "goal reached")
+        took = (rospy.Time.now() - begun).to_sec()
+        self.assertGreaterEqual(took, 3.0 - 0.1)
+        self.assertLess(took, 7.0, "3 s are left of its 8")
+        for joint, place in zip(JOINTS, FAR):
+            self.robot.wait_at(joint, place)
+        goal.trajectory.header.stamp = rospy.Time.now() - rospy.Duration.from_sec(9.0)
+        self.send(goal)
+        result = self.result(GoalStatus.REJECTED, "arm: trajectory refused: all points have passed")
+        self.assertEqual(result.error_code, FollowJointTrajectoryResult.INVALID_GOAL)
+
     def test_is_preempted_by_a_halt(self):
         self.send(goal_of(FAR, 5.0))
         self.wait_moving()
         self.succeed("halt")
-        self.assertTrue(self.client.wait_for_result(rospy.Duration.from_sec(DEADLINE)))
-        self.assertIn(self.client.get_state(), (GoalStatus.PREEMPTED, GoalStatus.ABORTED))
+        result = self.result(GoalStatus.PREEMPTED, "arm: stopped: |halt was called")
+        self.assertEqual(result.error_code, FollowJointTrajectoryResult.SUCCESSFUL)
         self.assert_rests()
+        self.assert_stops()
 
     def test_without_points_stops_and_succeeds_at_rest(self):
         self.send(goal_of(FAR, 5.0))
@@ -166,9 +234,23 @@ class Action(RobotTest):
         goal.path_tolerance = [JointTolerance(name="shoulder", position=1e-6),
                                JointTolerance(name="nobody", position=1e-6)]
         self.send(goal)
-        result = self.result(GoalStatus.ABORTED, "shoulder|off its path, the tolerance is 1e-06")
+        result = self.result(GoalStatus.ABORTED, "arm: trajectory stopped: shoulder is |rad off "
+                             "its path at | s, the tolerance is 1e-06 rad")
         self.assertEqual(result.error_code, FollowJointTrajectoryResult.PATH_TOLERANCE_VIOLATED)
         self.assert_stops()
+
+    def test_is_aborted_where_it_misses_a_goal_tolerance_of_its_own(self):
+        """One turn of the joint is 13107200 counts: -0.8 rad is between two of them."""
+        goal = goal_of(FAR, 2.0)
+        goal.goal_tolerance = [JointTolerance(name="shoulder", position=1e-12),
+                               JointTolerance(name="elbow", position=-1.0),
+                               JointTolerance(name="nobody", position=1e-12)]
+        goal.goal_time_tolerance = rospy.Duration.from_sec(0.3)
+        self.send(goal)
+        result = self.result(GoalStatus.ABORTED, "arm: goal missed: shoulder is |rad away 0.3 s "
+                             "after the end, the tolerance is 1e-12 rad")
+        self.assertEqual(result.error_code, FollowJointTrajectoryResult.GOAL_TOLERANCE_VIOLATED)
+        self.assertAlmostEqual(self.robot.wait_rest("shoulder"), FAR[0], delta=0.001)
 
     def connect(self, topic, kind):
         publisher = rospy.Publisher(f"{ACTION}/{topic}", kind, queue_size=10)
@@ -217,6 +299,39 @@ class Action(RobotTest):
         self.result(GoalStatus.SUCCEEDED, "goal reached")
         for joint, place in zip(JOINTS, FAR[:3] + NEAR[3:]):
             self.robot.wait_at(joint, place)
+
+
+class TwoGroups(ActionTest):
+    CONFIG = "config/robots/portal.yaml"
+
+    def setUp(self):
+        self.home_and_enable()
+
+    def goal(self, group, joints, positions, seconds):
+        client = self.make_client(f"/robot/{group}/follow_joint_trajectory")
+        client.send_goal(goal_of(positions, seconds, joints))
+        return client
+
+    def test_follow_their_goals_at_once(self):
+        portal = self.goal("portal", ["x", "z"], [0.3, -0.1], 4.0)
+        wrist = self.goal("wrist", ["pitch", "roll"], [0.5, 1.0], 3.0)
+        wait_until(lambda: abs(self.robot.position("pitch")) > 0.05, "the wrist moves")
+        for client in portal, wrist:
+            self.assertEqual(client.get_state(), GoalStatus.ACTIVE)
+        self.result(GoalStatus.SUCCEEDED, "wrist: goal reached", wrist)
+        self.result(GoalStatus.SUCCEEDED, "portal: goal reached", portal)
+        for joint, place in (("x", 0.3), ("z", -0.1), ("pitch", 0.5), ("roll", 1.0)):
+            self.robot.wait_at(joint, place)
+
+    def test_stop_apart(self):
+        portal = self.goal("portal", ["x", "z"], [0.0, 0.0], 4.0)
+        self.result(GoalStatus.SUCCEEDED, "portal: goal reached", portal)
+        portal = self.goal("portal", ["x", "z"], [0.4, -0.1], 5.0)
+        wrist = self.goal("wrist", ["pitch", "roll"], [-0.5, -1.0], 5.0)
+        wait_until(lambda: self.robot.position("x") > 0.05, "the portal moves")
+        self.succeed("wrist/halt")
+        self.result(GoalStatus.PREEMPTED, "wrist: stopped: |halt was called", wrist)
+        self.result(GoalStatus.SUCCEEDED, "portal: goal reached", portal)
 
 
 if __name__ == "__main__":
