@@ -1,6 +1,6 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
-// The homing methods of the families that are served in part: where home is says the motor, not
-// what the driver believes.
+// The homing methods of families by their manuals: where home is says the motor, not what the
+// driver believes.
 #include "system/families_homing.h"
 
 namespace cia402 {
