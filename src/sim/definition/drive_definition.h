@@ -185,6 +185,21 @@ struct UnitScale {
   double factor = 1.0;  ///< device units per internal unit
 };
 
+/// What makes the corners of profiles round.
+struct SCurveDefinition {
+  std::int64_t number = 3;  ///< of 6086h
+  double time = 0.0;        ///< s; 0: that of an acceleration by 60A4h
+};
+
+/// Its digital outputs.
+struct OutputsDefinition {
+  /// What the objects of the roles output_n_function say where 60FEh is shown, and where the axis
+  /// tells something by an output.
+  std::int64_t commanded = 0;
+  std::map<std::int64_t, OutputFunction> functions;
+  unsigned first = 16;  ///< bit of the first output in the role digital_outputs
+};
+
 /// See docs/simulated_drives.md for the file format.
 struct DriveDefinition {
   std::string name;
@@ -218,10 +233,7 @@ struct DriveDefinition {
   /// By the value of the object of the role sync_tolerance: the share of its period by which SYNC
   /// may be off in interpolated position before the fault `sync_error`; 0: anything.
   std::vector<double> sync_tolerances;
-  /// Number of 6086h that makes the corners of profiles round: over so many seconds, or over the
-  /// time of an acceleration by 60A4h where that is 0.
-  std::int64_t s_curve = 3;
-  double s_curve_time = 0.0;
+  SCurveDefinition s_curve;
   RangeUse range_use = RangeUse::none;
   std::vector<LimitUse> limit_uses;  ///< by the value of the role position_limits_use; empty: on
   std::vector<fieldbus::ObjectId> locked_while_enabled;
@@ -248,11 +260,7 @@ struct DriveDefinition {
   MakersOwnDefinition own;
   MemoryDefinition memory;
 
-  /// What the objects of the roles output_n_function say where 60FEh is shown, and where the axis
-  /// tells something by an output.
-  std::int64_t commanded_output = 0;
-  std::map<std::int64_t, OutputFunction> output_functions;
-  unsigned first_output = 16;  ///< bit of the first output in the role digital_outputs
+  OutputsDefinition outputs;
 
   std::vector<FaultDefinition> faults;
   std::vector<FaultRecordObjects>

@@ -92,8 +92,8 @@ void readDefinition(DefinitionReader& reader, bool extends, DriveDefinition& out
   reader.section("memory", [&](DefinitionReader& r) { readMemory(r, out.memory); });
   reader.section("state_machine", [&](DefinitionReader& r) { readStateMachine(r, out); });
   reader.section("s_curve", [&](DefinitionReader& r) {
-    r.read("number", out.s_curve, -32768, 32767);
-    r.read("time", out.s_curve_time, 0.0, 10.0);
+    r.read("number", out.s_curve.number, -32768, 32767);
+    r.read("time", out.s_curve.time, 0.0, 10.0);
   });
   reader.section("quirks", [&](DefinitionReader& r) { readQuirks(r, out.quirks); });
   reader.section("homing", [&](DefinitionReader& r) { readHoming(r, out.homing); });

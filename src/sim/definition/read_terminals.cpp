@@ -65,17 +65,17 @@ constexpr std::pair<const char*, OutputFunction> kOutputFunctions[] = {
 }  // namespace
 
 void readOutputs(DefinitionReader& reader, DriveDefinition& out) {
-  reader.read("commanded_output", out.commanded_output, 0, 65535);
-  std::int64_t first = out.first_output;
+  reader.read("commanded_output", out.outputs.commanded, 0, 65535);
+  std::int64_t first = out.outputs.first;
   reader.read("first_output", first, 0, 27);
-  out.first_output = static_cast<unsigned>(first);
-  if (reader.has("output_functions")) out.output_functions.clear();
+  out.outputs.first = static_cast<unsigned>(first);
+  if (reader.has("output_functions")) out.outputs.functions.clear();
   reader.section("output_functions", [&](DefinitionReader& functions) {
     for (const auto& [word, function] : kOutputFunctions) {
       std::int64_t number = 0;
       if (!functions.has(word)) continue;
       functions.read(word, number, 0, 65535);
-      out.output_functions[number] = function;
+      out.outputs.functions[number] = function;
     }
   });
 }

@@ -42,8 +42,8 @@ bool isSo(OutputFunction function, const OutputSituation& situation) {
 /// The level of an output that is not commanded; low where its function is not simulated.
 bool told(const DriveDefinition& definition, const DriveValues& values, const OutputRoles& output,
           const OutputSituation& situation) {
-  const auto function = definition.output_functions.find(values.raw(output.function, 0));
-  if (function == definition.output_functions.end()) return false;
+  const auto function = definition.outputs.functions.find(values.raw(output.function, 0));
+  if (function == definition.outputs.functions.end()) return false;
   const bool active_high = !output.logic || values.raw(*output.logic, 1) != 0;
   return isSo(function->second, situation) == active_high;
 }
@@ -53,12 +53,12 @@ bool told(const DriveDefinition& definition, const DriveValues& values, const Ou
 std::uint32_t outputsAtTerminals(const DriveDefinition& definition, const DriveValues& values,
                                  const OutputSituation& situation) {
   const std::int64_t mask = values.raw(Role::digital_outputs_mask, -1);
-  const std::int64_t commanded = definition.commanded_output;
+  const std::int64_t commanded = definition.outputs.commanded;
   const bool offline = situation.nmt != canopen::NmtState::operational;
   auto bits = static_cast<std::uint32_t>(values.raw(Role::digital_outputs, 0) & mask);
   std::uint32_t number = 0;
   for (const OutputRoles& output : kOutputs) {
-    const std::uint32_t bit = 1U << (definition.first_output + number);
+    const std::uint32_t bit = 1U << (definition.outputs.first + number);
     const auto set = [&](bool on) { bits = on ? bits | bit : bits & ~bit; };
     if (values.raw(output.function, commanded) != commanded) {
       set(told(definition, values, output, situation));

@@ -17,8 +17,8 @@ double MotionLimits::deceleration(Ramp ramp, const ModeDefinition* mode) const {
 }
 
 double MotionLimits::cornerTime(const ProfileLimits& limits) const {
-  if (values_.raw(Role::motion_profile_type, 0) != definition_.s_curve) return 0.0;
-  if (definition_.s_curve_time > 0.0) return definition_.s_curve_time;
+  if (values_.raw(Role::motion_profile_type, 0) != definition_.s_curve.number) return 0.0;
+  if (definition_.s_curve.time > 0.0) return definition_.s_curve.time;
   return std::max(limits.acceleration / values_.get(Role::profile_jerk_1, kUnlimited),
                   limits.deceleration / values_.get(Role::profile_jerk_2, kUnlimited));
 }
