@@ -113,6 +113,19 @@ TEST(Motor, TorqueAcceleratesUpToTheSpeedLimit) {
   EXPECT_TRUE(motor.atRest());
 }
 
+// All of its torque, 2 * 100 turns/s^2, less 10 of friction: 0.95 turns/s after 5 ms.
+TEST(Motor, RunsAwayFromItsDemandWhereItsPhasesAreSwapped) {
+  Motor motor(parameters(), 0.0);
+  motor.reverse(true);
+  steps(10, [&] { motor.followPosition(0.0); });
+  EXPECT_EQ(motor.position(), 0.0) << "it stands where it is to stand";
+  steps(10, [&] { motor.followPosition(1.0); });
+  EXPECT_NEAR(motor.velocity(), -0.95, 1e-9);
+  steps(1000, [&] { motor.followPosition(1.0); });
+  EXPECT_EQ(motor.velocity(), -50.0);
+  EXPECT_LT(motor.position(), -10.0);
+}
+
 TEST(Motor, BlockedRotorPushesInVain) {
   Motor motor(parameters(), 0.0);
   motor.block(true);

@@ -48,6 +48,8 @@ TEST_P(Id286Following, ThatIsWellIsLeftAlone) {
   EXPECT_EQ(scene.axis("joint").noticeCount(), told) << scene.told();
 }
 
+class Id286Runaway : public testing::TestWithParam<const char*> {};
+
 // A motor that turns, but too slowly, ends a trajectory by the tolerance of the path.
 TEST(Id286Trajectory, FromWhichTheMotorFallsBehindIsStopped) {
   FamilyScene scene(
@@ -62,6 +64,29 @@ TEST(Id286Trajectory, FromWhichTheMotorFallsBehindIsStopped) {
   EXPECT_NEAR(scene.velocity("joint"), 0.0, 1e-3);
   EXPECT_EQ(scene.state("joint").error_code, 0);
 }
+
+// A wrong 20C9h in closed loop: at the first command the motor runs the other way, as hard as it
+// may. 2102h ends it by alarm 19: at 1000 counts, 0.1 turns of the motor or 0.0126 rad of the
+// joint, where 1.2 * 250 turns/s^2 make 7.7 turns/s of it. The drive lets the motor go, which its
+// friction of 0.05 * 250 turns/s^2 stops within 2.4 turns or 0.3 rad. Nothing moves it after that.
+TEST_P(Id286Runaway, IsEndedByTheAlarmOfTheDriveAndTold) {
+  FamilyScene scene(familyJoint({kId286Cnfa, "10000", GetParam()}));
+  scene.inject("joint", "reversed_motor");
+  scene.forget();
+  scene.expectStands(500ms);
+  ASSERT_EQ(scene.setpoint("joint", 0.3), "");
+  scene.run(200ms);
+  EXPECT_LT(scene.position("joint"), -0.0126) << "it runs away";
+  EXPECT_FALSE(scene.truth("joint").power_stage_on) << scene.told();
+  EXPECT_THAT(scene.axis("joint").faultText(), HasSubstr("0x0019"));
+  scene.run(3s);
+  EXPECT_GT(scene.position("joint"), -0.0126 - 0.3 - 0.03);
+  scene.expectStands(1s);
+  EXPECT_THAT(scene.setpoint("joint", 0.3), HasSubstr("joint (node 1)"));
+}
+
+INSTANTIATE_TEST_SUITE_P(In, Id286Runaway, testing::Values("pp", "position_by_set_points"),
+                         [](const auto& tested) { return std::string(tested.param); });
 
 INSTANTIATE_TEST_SUITE_P(In, Id286Following,
                          testing::Values("pp", "position_by_velocity", "position_by_set_points"),

@@ -325,6 +325,7 @@ void DriveCore::removeCauses() {
   obstacle_.put(nullptr);
   onObstacle();
   motion_.motor().block(false);
+  motion_.motor().reverse(false);
   if (!definition_.warning_stops && faults_.endWarnings()) clearErrors();
   updateStatusword();
 }

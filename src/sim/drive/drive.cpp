@@ -318,6 +318,8 @@ Result<void> Drive::inject(const std::string& fault, Time now, unsigned axis) {
     impl.device.behaviour().tpdo_size_error = fault == "short_tpdos" ? -1 : 1;
   } else if (fault == "blocked_rotor") {
     core.motion().motor().block(true);
+  } else if (fault == "reversed_motor") {
+    core.motion().motor().reverse(true);
   } else if (fault == "clear") {
     impl.removeTroubles();
   } else if (const FaultDefinition* raw = impl.raw_faults.find(fault)) {
@@ -339,8 +341,9 @@ std::vector<std::string> Drive::faultNames() const {
   for (const ObstacleDefinition& obstacle : impl_->definition->obstacles) {
     names.push_back(obstacle.name);
   }
-  for (const char* name : {"blocked_rotor", "clear", "emergency_storm", "exchange", "long_tpdos",
-                           "power_cycle", "sdo_silent", "short_tpdos", "silent"}) {
+  for (const char* name :
+       {"blocked_rotor", "clear", "emergency_storm", "exchange", "long_tpdos", "power_cycle",
+        "reversed_motor", "sdo_silent", "short_tpdos", "silent"}) {
     names.emplace_back(name);
   }
   return names;

@@ -82,10 +82,11 @@ class Drive {
 
   /// Injects a fault by its name in the definition ("following_error", "overcurrent",
   /// "overtemperature", "undervoltage", "encoder", ...) or as a raw error code "0x7305"; also
-  /// "power_cycle", "exchange", "silent" (stops answering), "blocked_rotor", "sdo_silent",
-  /// "emergency_storm", "short_tpdos", "long_tpdos" (docs/simulated_drives.md), and "clear", which
-  /// takes the causes of all of them away. Faults and "blocked_rotor" happen in one axis, the
-  /// others to the device. @return an error that lists the known names. @pre axis < axisCount()
+  /// "power_cycle", "exchange", "silent" (stops answering), "blocked_rotor",
+  /// "reversed_motor", "sdo_silent", "emergency_storm", "short_tpdos", "long_tpdos"
+  /// (docs/simulated_drives.md), and "clear", which takes the causes of all of them away. Faults,
+  /// "blocked_rotor" and "reversed_motor" happen in one axis, the others to the device. @return an
+  /// error that lists the known names. @pre axis < axisCount()
   Result<void> inject(const std::string& fault, Time now, unsigned axis = 0);
   /// What inject() knows by name.
   std::vector<std::string> faultNames() const;

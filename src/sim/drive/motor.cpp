@@ -63,9 +63,20 @@ void Motor::accelerate(double wanted) {
     velocity_ = 0.0;
     return;
   }
+  if (reversed_) return runAway();
   const double drive = torque_ - friction;
   const bool stuck = velocity_ == 0.0 && drive * direction <= 0.0;  // friction never pushes
   if (!stuck) velocity_ += drive * parameters_.rated_acceleration * kDriveStepS;
+  turn();
+}
+
+/// One step by a torque of the wrong sign.
+void Motor::runAway() {
+  const double push = -torque_;
+  const double friction = std::copysign(parameters_.friction, velocity_ != 0.0 ? velocity_ : push);
+  const bool stuck = velocity_ == 0.0 && std::fabs(push) <= parameters_.friction;
+  if (!stuck) velocity_ += (push - friction) * parameters_.rated_acceleration * kDriveStepS;
+  velocity_ = std::clamp(velocity_, -parameters_.max_speed, parameters_.max_speed);
   turn();
 }
 

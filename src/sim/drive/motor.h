@@ -38,6 +38,8 @@ class Motor {
   void limitTorque(double both) { limitTorque(both, both); }
   /// A blocked rotor does not move; the loops push as hard as they may.
   void block(bool blocked) { blocked_ = blocked; }
+  /// Its phases are swapped: it pushes against what its loops ask for, and runs away from a demand.
+  void reverse(bool reversed) { reversed_ = reversed; }
   /// Hard stops: it turns neither further back than `low` nor further on than `high`, turns.
   void setStops(double low, double high);
   /// The position loop's lag, where the world changes it while running; s, > 0.
@@ -62,6 +64,7 @@ class Motor {
  private:
   double allowed(double torque) const;
   void accelerate(double wanted);
+  void runAway();
   double brakingSpeed(double distance) const;
   void turn();
 
@@ -73,7 +76,7 @@ class Motor {
   double velocity_ = 0.0;
   double torque_ = 0.0;
   std::optional<double> last_demand_;  ///< of the position loop, to know how fast it moves
-  bool blocked_ = false;
+  bool blocked_ = false, reversed_ = false;
 };
 
 }  // namespace cia402::sim
