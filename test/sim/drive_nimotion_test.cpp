@@ -131,6 +131,37 @@ TEST(SimulatedNimotion, TakesTheLargerLimitByMagnitudeOrAsANumber) {
   }
 }
 
+// 605Bh and 605Ch, 0 from the factory: 0x06 and 0x07 let it coast, with 1 they brake by 6084h
+// [2680-2681, 548-564]. 400000 counts/s^2 are 100 turns/s^2, by which 8 turns/s are gone after 0.08
+// s. Friction is 0.03 of 300 turns/s^2 and 0.5 /s of the speed: 13 turns/s^2 at most.
+TEST(SimulatedNimotion, CoastsAt06And07AsFromTheFactory) {
+  for (const std::uint16_t word : {std::uint16_t{0x0006}, std::uint16_t{0x0007}}) {
+    for (const std::uint32_t option : {0U, 1U}) {
+      NimotionBench bench;
+      bench.write(0x605B, 0, option, 2);
+      bench.write(0x605C, 0, option, 2);
+      bench.write(0x6083, 0, 400000, 4);
+      bench.write(0x6084, 0, 400000, 4);
+      bench.write(0x6060, 0, 3, 1);
+      bench.enable();
+      bench.write(0x60FF, 0, 8 * kCounts, 4);
+      bench.run(ms(500));
+      ASSERT_NEAR(bench.drive->truth(bench.now).velocity_turns, 8.0, 0.05);
+      bench.control(word);
+      bench.run(ms(5));
+      EXPECT_EQ(bench.drive->truth(bench.now).power_stage_on, option != 0) << word;
+      bench.run(ms(115));
+      const double left = bench.drive->truth(bench.now).velocity_turns;
+      EXPECT_FALSE(bench.drive->truth(bench.now).power_stage_on);
+      if (option == 0) {
+        EXPECT_GT(left, 8.0 - 13.0 * 0.12) << word;
+      } else {
+        EXPECT_NEAR(left, 0.0, 1e-6) << word;
+      }
+    }
+  }
+}
+
 // 605Eh = -1: reactions 0 to 2 say themselves how it stops [2121-2127].
 TEST(SimulatedNimotion, StopsAsTheAlarmSaysWhere605EhIsNegative) {
   double slower = 0.0;
