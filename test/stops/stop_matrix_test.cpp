@@ -7,9 +7,13 @@
 //   CIA402_STOPS_WRITE=1   writes the rows of the tests that run to docs/stops.md
 //   CIA402_STOPS_CASE=...  plays one case, by its words, and prints what the motor does
 #include <cstdlib>
+#include <filesystem>
 #include <iostream>
 #include <map>
+#include <set>
 
+#include "config/drive_family.h"
+#include "folders.h"
 #include "stops/stop_table.h"
 #include "system/scene.h"
 
@@ -94,6 +98,25 @@ TEST_P(StopMatrix, ComesToRestWithinItsBound) {
   measured()[name] = row;
   if (whole() || few() || asked("CIA402_STOPS_WRITE")) return;
   EXPECT_EQ(compare(row, readTable()[name]), "") << name;
+}
+
+// Modes that go to positions or distances one by one are left out, as docs/stops.md says: to the
+// drive they are profile position, and families_distances_test.cpp stops them.
+TEST(Movers, AreInEachOtherModeOfEachProfile) {
+  std::set<std::string> moved, known;
+  for (const Mover& mover : movers()) moved.insert(mover.drive + " in " + mover.mode);
+  const std::filesystem::path folder = test::configFolder() + "/drives";
+  for (const auto& file : std::filesystem::directory_iterator(folder)) {
+    Problems problems;
+    const drive::DriveProfile profile =
+        config::loadDriveFamily(file.path().string(), problems).drive;
+    EXPECT_TRUE(problems.empty()) << problems.text();
+    for (const drive::ModeSpec& mode : profile.modes) {
+      if (mode.kind == drive::ControlKind::homing || mode.handover.oneByOne()) continue;
+      known.insert(profile.name + " in " + mode.name);
+    }
+  }
+  EXPECT_EQ(moved, known);
 }
 
 INSTANTIATE_TEST_SUITE_P(All, StopMatrix, testing::ValuesIn(cells()), [](const auto& tested) {
