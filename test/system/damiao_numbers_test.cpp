@@ -213,6 +213,19 @@ TEST_F(DamiaoNumbers, OfThePolarityAreRawAndCostTheZero) {
   EXPECT_THAT(written.message, HasSubstr("`direction`"));
 }
 
+// Its factory value is 0 [L1272]; another one, left by somebody, may turn what the joint is told.
+TEST_F(DamiaoNumbers, OfAPolarityThatIsLeftInTheDriveAreWarnedOf) {
+  for (const unsigned left : {0U, 0x80U}) {
+    begin(damiaoJoint());
+    scene().drive("joint").dictionary().find({0x607E, 0})->number = left;
+    enable();
+    EXPECT_EQ(scene().told().find("polarity (607E:00) is 128 instead of 0") != std::string::npos,
+              left != 0)
+        << scene().told();
+    EXPECT_EQ(scene().told().find("give the axis a `direction`") != std::string::npos, left != 0);
+  }
+}
+
 // 8.3 of the manual's table: directions that it prints in two ways.
 TEST(DamiaoPdos, OfObjectsThatTheManualPrintsInTwoWaysAreWarnedOf) {
   for (const char* object : {"current_actual", "following_error_window", "velocity_window"}) {
