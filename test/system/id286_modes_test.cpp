@@ -24,7 +24,8 @@ void PrintTo(const Id286Reading& reading, std::ostream* out) { *out << reading.n
 
 class Id286Edge : public testing::TestWithParam<Id286Reading> {};
 
-// Which edge brings a set-point, that of bit 4 or 5, and whether bit 12 ever falls again.
+// Which edge brings a set-point, that of bit 4 or 5, or none at all, and whether bit 12 ever falls
+// again.
 TEST_P(Id286Edge, BringsEverySetPointOneAfterTheOtherAndInMotion) {
   Id286Trace scene(
       familyJoint(kId286InPp, ", simulation: {with: {" + std::string(GetParam().with) + "}}"));
@@ -47,6 +48,9 @@ TEST_P(Id286Edge, BringsEverySetPointOneAfterTheOtherAndInMotion) {
 
 constexpr char kPp[] =
     "behaviour: profile_position, bit_8: stopped, bit_13: none, before_start: [15]";
+constexpr char kAt0F[] =  // needs no edge: follows 607Ah as soon as it is enabled
+    "modes: {1: {behaviour: profile_position, bit_8: stopped, bit_13: none, handshake: false, "
+    "bit_12: always}}";
 const std::string kBits[] = {
     "modes: {1: {" + std::string(kPp) + ", set_point_bit: 4, bit_12: acknowledge}}",
     "modes: {1: {" + std::string(kPp) + ", set_point_bit: 4, bit_12: started}}",
@@ -57,8 +61,44 @@ INSTANTIATE_TEST_SUITE_P(Of, Id286Edge,
                          testing::Values(Id286Reading{"Bit4ThatIsAcknowledged", kBits[0].c_str()},
                                          Id286Reading{"Bit4WithABit12ThatStays", kBits[1].c_str()},
                                          Id286Reading{"Bit5ThatIsAcknowledged", kBits[2].c_str()},
-                                         Id286Reading{"Bit5WithABit12ThatStays", kBits[3].c_str()}),
+                                         Id286Reading{"Bit5WithABit12ThatStays", kBits[3].c_str()},
+                                         Id286Reading{"At0F", kAt0F}),
                          [](const auto& tested) { return std::string(tested.param.name); });
+
+// A drive that follows 607Ah from 0Fh on, without any edge: the printed trace has no controlword
+// for the first start [L1874]. What stands there when it is enabled must be where the motor is.
+TEST(Id286StartAt0F, MovesNothingWhenItIsEnabledWithATargetThatIsLeftThere) {
+  for (const char* pdos : {"", ", pdos: none"}) {
+    const double place = -0.7;
+    Id286Trace scene(familyJoint(
+        kId286InPp,
+        std::string(pdos) + ", simulation: {initial_position: -0.7, with: {" + kAt0F + "}}"));
+    ASSERT_TRUE(scene.boot(20s)) << scene.told();
+    scene.drive("joint").dictionary().find({0x607A, 0})->number = 90000;  // 1.13 rad
+    scene.forget();
+    ASSERT_TRUE(scene.procedure(ProcedureKind::enable).success) << scene.told();
+    scene.run(1s);
+    EXPECT_TRUE(scene.truth("joint").power_stage_on);
+    EXPECT_LT(scene.seen("joint").travel(), 2.0 * oneCount(kId286InPp)) << scene.told();
+    ASSERT_EQ(scene.setpoint("joint", place + 0.2), "");
+    scene.run(2s);
+    EXPECT_NEAR(scene.position("joint"), place + 0.2, 1e-4) << "it is such a drive";
+  }
+}
+
+// Without an edge, by the drive alone: what the test above relies on.
+TEST(Id286StartAt0F, IsWhatTheSimulatedDriveDoes) {
+  Id286Trace scene(
+      familyJoint(kId286InPp, ", pdos: none, simulation: {with: {" + std::string(kAt0F) + "}}"));
+  ASSERT_TRUE(scene.boot(20s)) << scene.told();
+  ASSERT_TRUE(scene.procedure(ProcedureKind::enable).success) << scene.told();
+  scene.run(100ms);
+  scene.clear();
+  scene.drive("joint").dictionary().find({0x607A, 0})->number = 5000;
+  scene.run(2s);
+  EXPECT_THAT(scene.controlwords, testing::Each(0x0FU));
+  EXPECT_NEAR(scene.position("joint"), 5000.0 * oneCount(kId286InPp), 1e-4);
+}
 
 // Each word in SYNC periods of its own, or a drive that takes the last one would see no edge.
 TEST(Id286Edges, LieInDifferentSyncPeriods) {
