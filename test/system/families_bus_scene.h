@@ -26,18 +26,13 @@ inline bool is(const FamilyMode& tested, const FamilyMode& other) {
   return std::string(tested.family) == other.family;
 }
 
-/// What an axis of the family must say of its motor: a gear of 50 where it has none inside. An
-/// SV660C has 100000 user units a turn, 8388608 / 100000 = 262144 / 3125.
+/// What an axis of the family must say of its motor: a gear of 50 where it has none inside.
 inline std::string busMotor(const FamilyMode& tested) {
   if (is(tested, kBusDamiao))
     return ", limits: {lower: -2.5, upper: 2.5, velocity: 0.8, "
            "acceleration: 4.0, effort: 5.0}";
-  const std::string gear = is(tested, kBusSv660c)
-                               ? ", write: [{object: gear_numerator, raw: 262144}, "
-                                 "{object: gear_denominator, raw: 3125}]"
-                               : "";
   return ", counts_per_turn: " + std::string(tested.counts_per_turn) +
-         ", gear_ratio: 50.0, rated_torque: 1.27" + gear + panelSteps(tested) +
+         ", gear_ratio: 50.0, rated_torque: 1.27" + panelSteps(tested) +
          ", limits: {lower: -2.5, upper: 2.5, velocity: 0.8, acceleration: 4.0, "
          "effort: 60.0}";
 }

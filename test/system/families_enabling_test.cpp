@@ -35,6 +35,13 @@ std::vector<Stale> staleOf(const std::string& family) {
             {{0x60FF, 0}, "[0x60FF, 0, target_speed, int32, rw, r, 30000]", 30000, false},
             {{0x6071, 0}, "[0x6071, 0, target_torque, int16, rw, r, 100, 0, 120]", 100, false}};
   }
+  if (family == kSv660c) {
+    return {
+        {{0x607A, 0}, "[0x607A, 0, target_position, int32, rw, r, 900000]", 900000, true},
+        {{0x60C1, 1}, "[0x60C1, 1, interpolation_data_1, int32, rw, r, 900000]", 900000, true},
+        {{0x60FF, 0}, "[0x60FF, 0, target_velocity, int32, rw, r, 300000]", 300000, false},
+        {{0x6071, 0}, "[0x6071, 0, target_torque, int16, rw, r, 400, -4000, 4000]", 400, false}};
+  }
   return {{{0x607A, 0}, "[0x607A, 0, target_position, int32, rw, r, 90000000]", 90000000, true},
           {{0x60FF, 0}, "[0x60FF, 0, target_velocity, int32, rw, r, 20000000]", 20000000, false},
           {{0x6071, 0}, "[0x6071, 0, target_torque, int16, rw, r, 900]", 900, false}};
@@ -213,7 +220,9 @@ INSTANTIATE_TEST_SUITE_P(
                   {{"pp", 1}, {"vl", 2}, {"pv", 3}, {"ip", 7}, {"csp", 8}, {"csv", 9}}},
         Switching{{kId286Cnfa, "10000", "pp"}, {{"pp", 1}, {"pv", 3}, {"csv", 3}, {"pt", 4}}},
         Switching{{kMegmeetDm5, "8388608", "csp"},
-                  {{"pp", 1}, {"pv", 3}, {"pt", 4}, {"csp", 8}, {"csv", 9}, {"cst", 10}}}),
+                  {{"pp", 1}, {"pv", 3}, {"pt", 4}, {"csp", 8}, {"csv", 9}, {"cst", 10}}},
+        Switching{{kSv660c, "100000", "ip"},
+                  {{"pp", 1}, {"pv", 3}, {"csv", 3}, {"pt", 4}, {"ip", 7}}}),
     [](const auto& tested) { return std::string(tested.param.tested.family); });
 
 }  // namespace

@@ -131,8 +131,9 @@ TEST_P(FamilyHomingResult, IsAFaultInWordsWhereOneComesMeanwhile) {
   const auto homed = scene.begin(ProcedureKind::home, "joint");
   ASSERT_TRUE(scene.runUntil([&] { return scene.velocity("joint") < -0.35; }, 8s)) << scene.told();
   const bool dm5 = GetParam().family == std::string(kMegmeetDm5);
-  const bool generic = GetParam().family == std::string("generic_cia402");
-  scene.inject("joint", dm5 ? "homing_time" : generic ? "overvoltage" : "over_voltage");
+  const bool one_word = GetParam().family == std::string("generic_cia402") ||
+                        GetParam().family == std::string(kSv660c);
+  scene.inject("joint", dm5 ? "homing_time" : one_word ? "overvoltage" : "over_voltage");
   ASSERT_TRUE(scene.runUntil([&] { return homed->has_value(); }, 3s));
   EXPECT_FALSE((*homed)->success);
   EXPECT_THAT((*homed)->message, HasSubstr("joint (node 1): fault"));

@@ -38,8 +38,10 @@ TEST_P(FamilyLimits, OfVelocityAndAccelerationAreKeptByTheMotor) {
   exertFamily(scene);
   const bool torque = isTorqueMode(GetParam());
   EXPECT_GT(motion.fastest, 0.9 * kLimitVelocity) << "the test asked for too little";
-  // Efforts are bounded by 6080h alone, which is the limit and a twentieth more.
-  EXPECT_LT(motion.fastest, kLimitVelocity * (torque ? 1.05 * 1.02 : 1.02));
+  // Efforts are bounded by the drive alone: 6080h is the limit and a twentieth more, 607Fh of the
+  // SV660C a tenth.
+  const double room = !torque ? 1.0 : GetParam().family == std::string(kSv660c) ? 1.1 : 1.05;
+  EXPECT_LT(motion.fastest, kLimitVelocity * room * 1.02);
   // Set-points of a stream are whole counts, a cycle of 4 ms apart; it is looked at for 8 ms.
   const double step = oneCount(GetParam()) / (0.004 * 0.008);
   if (!torque) {
@@ -130,7 +132,23 @@ INSTANTIATE_TEST_SUITE_P(All, FamilyLimitNumbers,
                                                         // 60 N m of 50 * 1.27
                                                         {{0x6072, 0}, 944.88},
                                                         {{0x60E0, 0}, 944.88},
-                                                        {{0x60E1, 0}, 944.88}}}),
+                                                        {{0x60E1, 0}, 944.88}}},
+                                         FamilyNumbers{{kSv660c, "100000", "pp"},
+                                                       {{{0x605A, 0}, 2.0},
+                                                        {{0x605C, 0}, 1.0},
+                                                        {{0x605D, 0}, 1.0},
+                                                        {{0x605E, 0}, 2.0},
+                                                        {{0x607D, 1}, -1989436.8},
+                                                        {{0x607D, 2}, 1989436.8},
+                                                        // 1.1 of the limit
+                                                        {{0x607F, 0}, 700281.7},
+                                                        {{0x6081, 0}, 636619.8},
+                                                        {{0x6083, 0}, 3183098.9},
+                                                        {{0x6084, 0}, 3183098.9},
+                                                        {{0x6085, 0}, 6366197.7},
+                                                        // 60 N m of 50 * 2.39
+                                                        {{0x6072, 0}, 502.09},
+                                                        {{0x200A, 0x29}, 2.0}}}),
                          [](const auto& tested) {
                            return std::string(tested.param.tested.family) + "_" +
                                   tested.param.tested.mode;
@@ -175,11 +193,22 @@ void limitDrive(Scene& scene, double counts) {
   }
 }
 
+/// With 607Dh minded at once, where a parameter of the maker says when it is.
+std::string jointThatMindsItsLimits(const FamilyMode& tested) {
+  const std::string family = tested.family;
+  if (family == kMegmeetDm5) {
+    return familyJoint(tested, ", write: [{object: software_limit_mode, raw: 1}]");
+  }
+  if (family == kSv660c) {  // H0A.40: 1 on, 2 once homed
+    return replaced(familyJoint(tested), "raw: 3125}",
+                    "raw: 3125}, {object: software_limit_enable, raw: 1}");
+  }
+  return familyJoint(tested);
+}
+
 // 607Dh at 1 rad, narrower than the joint's: the drive stops there, which is told.
 TEST_P(FamilyLimitsInTheDrive, EndTheMotionInWordsAndAreLeftTheOtherWay) {
-  const bool dm5 = GetParam().family == std::string(kMegmeetDm5);
-  FamilyScene scene(familyJoint(
-      GetParam(), dm5 ? ", write: [{object: software_limit_mode, raw: 1}]" : std::string()));
+  FamilyScene scene(jointThatMindsItsLimits(GetParam()));
   const double limit = 1.0 / oneCount(GetParam());
   limitDrive(scene, limit);
   if (scene.kind() == ControlKind::position) {
@@ -227,8 +256,9 @@ INSTANTIATE_TEST_SUITE_P(All, FamilyPositionLimits, testing::ValuesIn(familyMode
 
 class FamilyEfforts : public testing::TestWithParam<FamilyMode> {};
 
-// limits/effort of 60 N m are 944.9 / 1000 of 50 * 1.27 N m.
+// limits/effort of 60 N m are 944.9 / 1000 of 50 * 1.27 N m, 502.1 / 1000 of 50 * 2.39 N m.
 TEST_P(FamilyEfforts, AgainstABlockedRotorAreTheLimitAndTold) {
+  const double limit = GetParam().family == std::string(kSv660c) ? 502.0 : 945.0;
   FamilyScene scene(familyJoint(GetParam()));
   Motion motion(scene, "joint");
   scene.inject("joint", "blocked_rotor");
@@ -237,17 +267,75 @@ TEST_P(FamilyEfforts, AgainstABlockedRotorAreTheLimitAndTold) {
     (void)scene.setpoint("joint", torque ? 90.0 : 0.7);  // more than the limit is cut to it
     scene.run(20ms);
   }
-  EXPECT_GT(motion.strongest, 944.0 * 0.99) << scene.told();
-  EXPECT_LE(motion.strongest, 945.0);
+  EXPECT_GT(motion.strongest, limit * 0.99) << scene.told();
+  EXPECT_LE(motion.strongest, limit);
   EXPECT_NEAR(scene.state("joint").effort, 60.0, 0.1);
 }
 
 INSTANTIATE_TEST_SUITE_P(All, FamilyEfforts,
-                         testing::Values(FamilyMode{kMegmeetDm5, "8388608", "pv"},
-                                         FamilyMode{kMegmeetDm5, "8388608", "csv"},
-                                         FamilyMode{kMegmeetDm5, "8388608", "pt"},
-                                         FamilyMode{kMegmeetDm5, "8388608", "cst"}),
+                         testing::ValuesIn(familyModesThat([](const FamilyMode& tested) {
+                           const std::string family = tested.family, mode = tested.mode;
+                           return (family == kMegmeetDm5 || family == kSv660c) &&
+                                  (isTorqueMode(tested) || mode == "pv" || mode == "csv");
+                         })),
                          familyModeName);
+
+/// A limit that the boot writes, by its name with its object.
+struct CutLimit {
+  FamilyMode tested;
+  const char* name;
+  fieldbus::ObjectId id;
+};
+void PrintTo(const CutLimit& cut, std::ostream* out) {
+  *out << cut.tested.family << " " << cut.name;
+}
+
+class FamilyCutLimit : public testing::TestWithParam<CutLimit> {};
+
+TEST_P(FamilyCutLimit, IsToldWithBothNumbersAndRefusesNothing) {
+  Scene scene(loadText(familyJoint(GetParam().tested)));
+  ASSERT_TRUE(scene.boot(20s)) << scene.told();
+  sim::Entry* entry = scene.drive("joint").dictionary().find(GetParam().id);
+  const std::uint64_t written = entry->number;
+  EXPECT_TRUE(scene.procedure(ProcedureKind::enable).success) << scene.told();
+  EXPECT_THAT(scene.told(), testing::Not(HasSubstr("written at the boot")));
+  EXPECT_TRUE(scene.procedure(ProcedureKind::disable).success);
+  entry->number = written / 2;
+  for (int i = 0; i < 2; ++i) {
+    EXPECT_TRUE(scene.procedure(ProcedureKind::enable).success) << scene.told();
+    EXPECT_TRUE(scene.procedure(ProcedureKind::disable).success);
+  }
+  const std::string told = scene.told(), words = "instead of the " + std::to_string(written) +
+                                                 " that was written at the boot";
+  EXPECT_THAT(told, HasSubstr(std::string(GetParam().name) + " is " + std::to_string(written / 2) +
+                              " " + words));
+  EXPECT_EQ(told.find(words), told.rfind(words)) << "once";
+}
+
+constexpr FamilyMode kCutDm5{kMegmeetDm5, "8388608", "pp"}, kCutSv660c{kSv660c, "100000", "pp"};
+
+INSTANTIATE_TEST_SUITE_P(
+    Of, FamilyCutLimit,
+    testing::Values(CutLimit{kCutDm5, "max_profile_velocity (607F:00)", {0x607F, 0}},
+                    CutLimit{kCutDm5, "max_motor_speed (6080:00)", {0x6080, 0}},
+                    CutLimit{kCutDm5, "max_torque (6072:00)", {0x6072, 0}},
+                    CutLimit{kCutDm5, "positive_torque_limit (60E0:00)", {0x60E0, 0}},
+                    CutLimit{kCutDm5, "negative_torque_limit (60E1:00)", {0x60E1, 0}},
+                    CutLimit{kCutDm5, "profile_velocity (6081:00)", {0x6081, 0}},
+                    CutLimit{kCutDm5, "profile_acceleration (6083:00)", {0x6083, 0}},
+                    CutLimit{kCutDm5, "profile_deceleration (6084:00)", {0x6084, 0}},
+                    CutLimit{kCutDm5, "quick_stop_deceleration (6085:00)", {0x6085, 0}},
+                    CutLimit{kCutSv660c, "max_profile_velocity (607F:00)", {0x607F, 0}},
+                    CutLimit{kCutSv660c, "profile_velocity (6081:00)", {0x6081, 0}},
+                    CutLimit{kCutSv660c, "quick_stop_deceleration (6085:00)", {0x6085, 0}},
+                    CutLimit{kCutSv660c, "max_acceleration (60C5:00)", {0x60C5, 0}},
+                    CutLimit{kCutSv660c, "max_deceleration (60C6:00)", {0x60C6, 0}},
+                    CutLimit{kCutSv660c, "max_torque (6072:00)", {0x6072, 0}},
+                    CutLimit{kCutSv660c, "following_error_window (6065:00)", {0x6065, 0}}),
+    [](const auto& tested) {
+      return std::string(tested.param.tested.family) + "_" +
+             fieldbus::toString(tested.param.id).substr(0, 4);
+    });
 
 }  // namespace
 }  // namespace cia402

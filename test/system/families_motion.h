@@ -10,11 +10,11 @@
 namespace cia402 {
 
 constexpr char kNimotionStepper[] = "nimotion_stepper", kId286Cnfa[] = "id286_cnfa",
-               kMegmeetDm5[] = "megmeet_dm5";
+               kMegmeetDm5[] = "megmeet_dm5", kSv660c[] = "sv660c";
 
 inline FamilyMode nimotionIn(const char* mode) { return {kNimotionStepper, "4000", mode}; }
 
-/// Every mode of the families that are served in part so far.
+/// Every mode by which these families are streamed, sent to goals or pushed.
 inline std::vector<FamilyMode> familyModes() {
   std::vector<FamilyMode> modes;
   for (const char* mode : {"pp", "vl", "pv", "ip", "csp", "csv"}) {
@@ -27,6 +27,9 @@ inline std::vector<FamilyMode> familyModes() {
   for (const char* mode : {"pp", "pv", "csp", "csv", "pt", "cst"}) {
     modes.push_back({kMegmeetDm5, "8388608", mode});
   }
+  for (const char* mode : {"ip", "pp", "pv", "csv", "pt"}) {
+    modes.push_back({kSv660c, "100000", mode});
+  }
   return modes;
 }
 
@@ -34,7 +37,8 @@ inline std::vector<FamilyMode> familyModes() {
 inline std::vector<FamilyMode> families() {
   return {{kNimotionStepper, "4000", "csp"},
           {kId286Cnfa, "10000", "pp"},
-          {kMegmeetDm5, "8388608", "csp"}};
+          {kMegmeetDm5, "8388608", "csp"},
+          {kSv660c, "100000", "ip"}};
 }
 
 inline std::string familyModeName(const testing::TestParamInfo<FamilyMode>& tested) {

@@ -19,11 +19,16 @@ inline void PrintTo(const FamilyMode& tested, std::ostream* out) {
   *out << tested.family << " in " << tested.mode;
 }
 
+/// 8388608 encoder counts for 100000 user units: 262144 / 3125, reduced.
+constexpr char kSv660cGear[] =
+    ", write: [{object: gear_numerator, raw: 262144}, {object: gear_denominator, raw: 3125}]";
+
 /// What a family wants to be told before it is enabled the first time, as options of the axis.
 inline std::string panelSteps(const FamilyMode& tested) {
   const std::string family = tested.family;
   if (family == "id286_cnfa") return ", keeps: [motor_current], unwatched_streams: true";
   if (family == "nimotion_stepper") return ", unwatched_streams: true";
+  if (family == "sv660c") return kSv660cGear;
   return family == "megmeet_dm5" ? ", adjust: [control_mode]" : "";
 }
 
@@ -34,7 +39,12 @@ constexpr char kNimotionSwitches[] =
     "{object: di1_function, raw: 14}, {object: di1_logic, raw: 1}, "
     "{object: di2_function, raw: 31}, {object: di2_logic, raw: 1}]";
 
-/// A joint behind a gear of 50 with a motor of 1.27 N m. @param more options of the axis, as
+/// What the motor of a family is rated at, N m; the SV660C reads it from its drive (H00.12).
+inline std::string ratedTorque(const FamilyMode& tested) {
+  return tested.family == std::string("sv660c") ? "2.39" : "1.27";
+}
+
+/// A joint behind a gear of 50. @param more options of the axis, as
 /// ", key: value"
 inline std::string familyJoint(const FamilyMode& tested, const std::string& more = {}) {
   const std::string mode = tested.mode;
@@ -42,7 +52,8 @@ inline std::string familyJoint(const FamilyMode& tested, const std::string& more
          "axes:\n"
          "  joint: {node_id: 1, drive: " +
          std::string(tested.family) + ", counts_per_turn: " + tested.counts_per_turn +
-         ", gear_ratio: 50.0, rated_torque: 1.27,\n    mode: " + mode + ", modes: [" + mode +
+         ", gear_ratio: 50.0, rated_torque: " + ratedTorque(tested) + ",\n    mode: " + mode +
+         ", modes: [" + mode +
          "],\n"
          "    limits: {lower: -2.5, upper: 2.5, velocity: 0.8, acceleration: 4.0,\n"
          "             effort: 60.0}" +

@@ -1,6 +1,6 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
-// The families that are served in part so far, each in each of its modes with its simulated drive:
-// what the joint does is read from the motor.
+// Families in each of their modes with their simulated drives: what the joint does is read from the
+// motor.
 #include "system/families_motion.h"
 
 namespace cia402 {
@@ -131,22 +131,23 @@ TEST_P(FamilyWith, ANegativeLimitSwitchIsFoundAsHome) {
   EXPECT_TRUE(scene.state("joint").homed);
 }
 
-INSTANTIATE_TEST_SUITE_P(All, FamilyWith,
-                         testing::Values(FamilyFault{{kNimotionStepper, "4000", "csp"},
-                                                     "over_voltage",
-                                                     "0x3110",
-                                                     "over voltage: the bus is above 2001h:01"},
-                                         FamilyFault{{kId286Cnfa, "10000", "pp"},
-                                                     "over_voltage",
-                                                     "0x000E",
-                                                     "supply over-voltage: braking returns more"},
-                                         FamilyFault{{kMegmeetDm5, "8388608", "csp"},
-                                                     "overvoltage",
-                                                     "0xFF02",
-                                                     "supply over-voltage (Er.002)"}),
-                         [](const auto& tested) {
-                           return std::string(tested.param.tested.family);
-                         });
+INSTANTIATE_TEST_SUITE_P(
+    All, FamilyWith,
+    testing::Values(
+        FamilyFault{{kNimotionStepper, "4000", "csp"},
+                    "over_voltage",
+                    "0x3110",
+                    "over voltage: the bus is above 2001h:01"},
+        FamilyFault{{kId286Cnfa, "10000", "pp"},
+                    "over_voltage",
+                    "0x000E",
+                    "supply over-voltage: braking returns more"},
+        FamilyFault{{kMegmeetDm5, "8388608", "csp"},
+                    "overvoltage",
+                    "0xFF02",
+                    "supply over-voltage (Er.002)"},
+        FamilyFault{{kSv660c, "100000", "ip"}, "overvoltage", "0x3210", "DC link over voltage"}),
+    [](const auto& tested) { return std::string(tested.param.tested.family); });
 
 }  // namespace
 }  // namespace cia402
