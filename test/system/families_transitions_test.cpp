@@ -16,6 +16,12 @@ std::string wayOut(const std::string& way) { return ", disable_by: [" + way + "]
 
 class FamilyTransitions : public testing::TestWithParam<FamilyMode> {
  protected:
+  /// A fault of the power stage, as the simulated drives call it, and how its code begins.
+  static const char* overCurrent() {
+    return is(GetParam(), kBusNimotion) || is(GetParam(), kBusId286) ? "over_current"
+                                                                     : "overcurrent";
+  }
+  static const char* overCurrentCode() { return is(GetParam(), kBusId286) ? "0x000A" : "0x2"; }
   static void expectOff(Scene& scene) {
     scene.run(200ms);
     EXPECT_FALSE(scene.truth("joint").power_stage_on);
@@ -23,8 +29,7 @@ class FamilyTransitions : public testing::TestWithParam<FamilyMode> {
   }
 };
 
-INSTANTIATE_TEST_SUITE_P(Of, FamilyTransitions, testing::Values(kBusNimotion, kBusDamiao, kBusDm5),
-                         nameOfFamily);
+INSTANTIATE_TEST_SUITE_P(Of, FamilyTransitions, allFamilies(), nameOfFamily);
 
 // 2, 3 and 4; 5 and 10, 5, 6 and 7, 8 and 7, or 9, each after its state.
 TEST_P(FamilyTransitions, GoByTheirWordsInThePdo) {
@@ -41,7 +46,9 @@ TEST_P(FamilyTransitions, GoByTheirWordsInThePdo) {
     scene.clear();
     scene.forget();
     ASSERT_NO_FATAL_FAILURE(enableJoint(scene));
-    EXPECT_THAT(commandsSeen(scene, 1), ElementsAre("06@40", "07@21", "0F@23"));
+    std::vector<std::string> enabling = {"06@40", "07@21", "0F@23"};
+    if (is(GetParam(), kBusSv660c)) enabling.push_back("1F@27");  // ip wants bit 4 [L920]
+    EXPECT_THAT(commandsSeen(scene, 1), testing::ElementsAreArray(enabling));
     EXPECT_TRUE(scene.truth("joint").power_stage_on);
     scene.run(200ms);
     scene.clear();
@@ -87,7 +94,7 @@ TEST_P(FamilyTransitions, GoByTheirWordsBySdo) {
   EXPECT_TRUE(inOrder(scene.writes(), {word("07"), word("06"), word("00")}));
   expectOff(scene);
   ASSERT_NO_FATAL_FAILURE(enableJoint(scene));
-  scene.inject("joint", is(GetParam(), kBusNimotion) ? "over_current" : "overcurrent");
+  scene.inject("joint", overCurrent());
   scene.run(500ms);
   scene.clear();
   const bus::Answer cleared = scene.procedure(ProcedureKind::clear_faults);
@@ -124,8 +131,9 @@ TEST_P(FamilyTransitions, ThatAreNotMadeInTimeAreTold) {
 }
 
 TEST_P(FamilyTransitions, OutOfOperationThatAreNotMadeInTimeAreTold) {
-  // A DM5 may close its brake first, which P02.11 and P02.13 say.
-  const Duration longest = GetParam().family == std::string("megmeet_dm5") ? 12s : 7s;
+  // A DM5 may close its brake first, which P02.11 and P02.13 say; an SV660C has 5 s for its ramp
+  // (timing/transitions), and 2 s for each transition behind that.
+  const Duration longest = is(GetParam(), kBusDm5) ? 12s : is(GetParam(), kBusSv660c) ? 10s : 7s;
   for (const NotMade& row :
        {NotMade{5, "5, 10", "operation enabled"}, NotMade{10, "5, 10", "switched on"},
         NotMade{6, "5, 6, 7", "switched on"}, NotMade{7, "5, 6, 7", "ready to switch on"},
@@ -169,13 +177,13 @@ TEST_P(FamilyTransitions, OfStopsAndResetsThatAreNotMadeInTimeAreTold) {
   }
   Scene scene(loadText(busJoint(GetParam(), with("quirks: {fault_reset_tries: 20}"))));
   ASSERT_TRUE(scene.boot(kFamilyBoot)) << scene.told();
-  scene.inject("joint", is(GetParam(), kBusNimotion) ? "over_current" : "overcurrent");
+  scene.inject("joint", overCurrent());
   scene.run(500ms);
   const Time asked = scene.now();
   const bus::Answer cleared = scene.procedure(ProcedureKind::clear_faults);
   EXPECT_FALSE(cleared.success);
   EXPECT_LT(scene.now() - asked, 15s);
-  EXPECT_THAT(cleared.message, HasSubstr("0x2"));
+  EXPECT_THAT(cleared.message, HasSubstr(overCurrentCode()));
 }
 
 }  // namespace
