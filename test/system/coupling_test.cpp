@@ -214,6 +214,20 @@ TEST(Coupling, AnAxisTakesNoSetPointAlone) {
   EXPECT_EQ(scene.setpoint("base", 0.1), "");
 }
 
+TEST(Coupling, ItsJointsTakeNoSetPointsOfTheirGroup) {
+  Wrist scene;
+  scene.forget();
+  const auto refusal = scene.ask(bus::GroupSetpointsCommand{0, {0.3, 0.5}, {}});
+  ASSERT_TRUE(refusal->has_value());
+  EXPECT_EQ((*refusal)->message,
+            "wrist: set-points refused, nothing moves for them: pitch (axes m5, m6): several axes "
+            "move it, which takes trajectories alone; roll (axes m5, m6): several axes move it, "
+            "which takes trajectories alone");
+  scene.run(300ms);
+  expectNothingMoved(scene, "m5");
+  expectNothingMoved(scene, "m6");
+}
+
 TEST(Coupling, JointsOfOneCouplingAreNamedTogether) {
   Wrist scene(wrist(kDifferential, ", allow_partial_joints_goal: true"));
   bus::TrajectoryCommand command;

@@ -1,5 +1,8 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 // Two motors on one joint. Judged by the motors: how far apart they are, and when they stand.
+#include <optional>
+#include <string>
+
 #include "system/scene.h"
 
 namespace cia402 {
@@ -140,6 +143,36 @@ TEST(Gantry, AFaultOfOneSideStopsBothWithinACycleAndTheDrivesRamp) {
     EXPECT_FALSE(scene.on("x1") || scene.on("x2"));
     EXPECT_THAT(scene.told(), HasSubstr(std::string("x (gantry): one side has no power, ") + side));
     EXPECT_FALSE(scene.move({0.0}, 2s).success);
+  }
+}
+
+/// When a side tells its fault (CiA 402: statusword x0xx 1111 or x0xx 1000), and the other one is
+/// told the quick stop (controlword 0xxx x01x).
+struct StopOnTheWire {
+  StopOnTheWire(Portal& scene, unsigned faulty, unsigned other) {
+    scene.world().bus().setMonitor([this, faulty, other](const can::Frame& frame, Time time) {
+      const unsigned word = frame.data[0] | static_cast<unsigned>(frame.data[1]) << 8;
+      const bool fault = (word & 0x4Fu) == 0x0Fu || (word & 0x4Fu) == 0x08u;
+      if (frame.id == 0x180u + faulty && fault && !told) told = time;
+      if (frame.id == 0x200u + other && (word & 0x86u) == 0x02u && !answered) answered = time;
+    });
+  }
+  std::optional<Time> told, answered;
+};
+
+TEST(Gantry, TheOtherSideGetsItsQuickStopWithinACycleOfTheStatuswordWithTheFault) {
+  for (const unsigned faulty : {1u, 2u}) {
+    Portal scene;
+    scene.enable();
+    ASSERT_TRUE(scene.move({0.3}, 2s).success);
+    scene.run(1s);
+    const StopOnTheWire wire(scene, faulty, 3 - faulty);
+    scene.inject("x" + std::to_string(faulty), "0x7305");
+    scene.run(100ms);
+    ASSERT_TRUE(wire.told && wire.answered) << faulty;
+    EXPECT_GT(*wire.answered, *wire.told);
+    EXPECT_LE(*wire.answered - *wire.told, kCycle) << faulty;
+    scene.world().bus().setMonitor({});
   }
 }
 
