@@ -15,8 +15,7 @@ namespace {
 constexpr Duration kWatchPeriod = std::chrono::milliseconds(1);
 
 // Controlword.
-constexpr std::uint16_t kFaultReset = 0x0080;
-constexpr std::uint16_t kUnlockRamp = 0x0020, kHalt = 0x0100;
+constexpr std::uint16_t kFaultReset = 0x0080, kUnlockRamp = 0x0020, kHalt = 0x0100;
 // Statusword.
 constexpr std::uint16_t kModeBits = 0xFC00;
 

@@ -1,5 +1,6 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #include "sim/drive/drive.h"
+#include "common/text.h"
 
 #include <algorithm>
 #include <cmath>
@@ -325,11 +326,9 @@ Result<void> Drive::inject(const std::string& fault, Time now, unsigned axis) {
   } else if (const FaultDefinition* raw = impl.raw_faults.find(fault)) {
     core.raise(*raw);
   } else {
-    std::string names;
-    for (const std::string& name : faultNames()) names += (names.empty() ? "" : ", ") + name;
     return Error{"no fault '" + fault + "' in the simulated drive " + impl.definition->name +
-                 " (node " + std::to_string(impl.device.node()) + "); known: " + names +
-                 ", or an error code like 0x7305"};
+                 " (node " + std::to_string(impl.device.node()) +
+                 "); known: " + joined(faultNames(), ", ") + ", or an error code like 0x7305"};
   }
   impl.flushChanges();
   return {};
@@ -341,11 +340,9 @@ std::vector<std::string> Drive::faultNames() const {
   for (const ObstacleDefinition& obstacle : impl_->definition->obstacles) {
     names.push_back(obstacle.name);
   }
-  for (const char* name :
-       {"blocked_rotor", "clear", "emergency_storm", "exchange", "long_tpdos", "power_cycle",
-        "reversed_motor", "sdo_silent", "short_tpdos", "silent"}) {
-    names.emplace_back(name);
-  }
+  names.insert(names.end(),
+               {"blocked_rotor", "clear", "emergency_storm", "exchange", "long_tpdos",
+                "power_cycle", "reversed_motor", "sdo_silent", "short_tpdos", "silent"});
   return names;
 }
 
