@@ -217,42 +217,6 @@ constexpr char kThreeSwitches[] =
     "{object: di1_function, raw: 36}, {object: di2_function, raw: 35}, {object: di3_function, raw: "
     "32}, {object: di4_function, raw: 0}";
 
-/// What the motor does in a search, as "+F -S": forwards by the search speed, back by the slow one.
-class Dm5Ways {
- public:
-  void see(double velocity) {  // rad/s, each millisecond
-    const double speed = std::fabs(velocity);
-    const char direction = velocity > 0.0 ? '+' : '-';
-    if (direction != direction_) turn(direction);
-    highest_ = std::max(highest_, speed);
-    held_ = std::fabs(speed - kZeroSpeed) < 0.1 * kZeroSpeed ? held_ + 1 : 0;
-    if (speed > 1.5 * kZeroSpeed) add('F');
-    if (held_ > 15) add('S');  // a ramp is there for 8 ms
-  }
-  const std::string& said() {
-    turn(' ');
-    return said_;
-  }
-
- private:
-  void turn(char direction) {
-    if (highest_ > 0.5 * kZeroSpeed && kind_ == ' ') add('S');
-    direction_ = direction;
-    kind_ = ' ';
-    highest_ = 0.0;
-    held_ = 0;
-  }
-  void add(char kind) {
-    if (kind != kind_) said_ += (said_.empty() ? "" : " ") + std::string{direction_, kind};
-    kind_ = kind;
-  }
-
-  std::string said_;
-  char direction_ = ' ', kind_ = ' ';  ///< now
-  double highest_ = 0.0;               ///< speed since it turned, rad/s
-  int held_ = 0;                       ///< the slow speed, ms
-};
-
 /// The lines of a method, its starts in turns of the motor and what is printed for each. Limit
 /// switches at -2 and 5 and the home switch from 1 to 2.6, index pulses 0.8 turns after each whole
 /// one: from the edges of the home switch there is time to become slow before the next.
@@ -271,7 +235,7 @@ TEST_P(Dm5Printing, SaysWhichWaysAndHowFastTheMotorTurns) {
         replaced(homingJoint({kHomingDm5, switches.c_str(), {GetParam().method, start, 0.0}}),
                  "index_offset: 0.3", "index_offset: 0.8")));
     ASSERT_TRUE(scene.boot(20s)) << scene.told();
-    Dm5Ways ways;
+    HomingWays ways;
     scene.watch([&] { ways.see(scene.velocity("joint")); });
     const bus::Answer homed = scene.procedure(ProcedureKind::home, "joint");
     ASSERT_TRUE(homed.success) << homed.message << scene.told();

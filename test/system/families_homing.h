@@ -1,6 +1,8 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <iomanip>
 #include <ostream>
 #include <sstream>
@@ -106,5 +108,41 @@ inline std::string homingJoint(const FamilyHoming& homing) {
           ", lower_limit_switch: " + place(-2.0) + ", upper_limit_switch: " + place(5.0) +
           ", home_switch: [" + place(1.0) + ", " + place(2.6) + "], index_offset: 0.3}");
 }
+
+/// What the motor does in a search, as "+F -S": forwards by the search speed, back by the slow one.
+class HomingWays {
+ public:
+  void see(double velocity) {  // rad/s, each millisecond
+    const double speed = std::fabs(velocity);
+    const char direction = velocity > 0.0 ? '+' : '-';
+    if (direction != direction_) turn(direction);
+    highest_ = std::max(highest_, speed);
+    held_ = std::fabs(speed - kZeroSpeed) < 0.1 * kZeroSpeed ? held_ + 1 : 0;
+    if (speed > 1.5 * kZeroSpeed) add('F');
+    if (held_ > 15) add('S');  // a ramp is there for 8 ms
+  }
+  const std::string& said() {
+    turn(' ');
+    return said_;
+  }
+
+ private:
+  void turn(char direction) {
+    if (highest_ > 0.5 * kZeroSpeed && kind_ == ' ') add('S');
+    direction_ = direction;
+    kind_ = ' ';
+    highest_ = 0.0;
+    held_ = 0;
+  }
+  void add(char kind) {
+    if (kind != kind_) said_ += (said_.empty() ? "" : " ") + std::string{direction_, kind};
+    kind_ = kind;
+  }
+
+  std::string said_;
+  char direction_ = ' ', kind_ = ' ';  ///< now
+  double highest_ = 0.0;               ///< speed since it turned, rad/s
+  int held_ = 0;                       ///< the slow speed, ms
+};
 
 }  // namespace cia402

@@ -141,5 +141,52 @@ INSTANTIATE_TEST_SUITE_P(Generic, FamilyHomingBehind,
                          testing::ValuesIn(withFamily(kByTheBookPp, kAsDelivered, homesBehind())),
                          familyMethodName);
 
+/// The lines of a method of the NiMotion, its starts in turns of the motor and what is printed for
+/// each, as HomingWays says it; switches as those of FamilyHome.
+struct NimotionPrinted {
+  int method;
+  std::vector<std::pair<double, const char*>> ways;
+};
+void PrintTo(const NimotionPrinted& printed, std::ostream* out) {
+  *out << "method " << printed.method;
+}
+
+class NimotionPrinting : public testing::TestWithParam<NimotionPrinted> {};
+
+TEST_P(NimotionPrinting, SaysWhichWaysAndHowFastTheMotorTurns) {
+  for (const auto& [start, printed] : GetParam().ways) {
+    Scene scene(
+        loadText(homingJoint({kStepperPp, kNimotionSwitches, {GetParam().method, start, 0.0}})));
+    ASSERT_TRUE(scene.boot(20s)) << scene.told();
+    HomingWays ways;
+    scene.watch([&] { ways.see(scene.velocity("joint")); });
+    const bus::Answer homed = scene.procedure(ProcedureKind::home, "joint");
+    ASSERT_TRUE(homed.success) << homed.message << scene.told();
+    EXPECT_EQ(ways.said(), printed) << "from " << start;
+  }
+}
+
+// [L1208-1346]
+const NimotionPrinted kNimotionPrinted[] = {
+    {17, {{0.0, "-F +S"}, {-2.4, "+S"}}},
+    {18, {{3.6, "+F -S"}, {5.4, "-S"}}},
+    {19, {{0.0, "+F -S"}, {1.8, "-S"}}},
+    {20, {{0.0, "+S"}, {1.8, "-F +S"}}},
+    {21, {{3.6, "-F +S"}, {1.8, "+S"}}},
+    {22, {{3.6, "-S"}, {1.8, "+F -S"}}},
+    {23, {{0.0, "+F -S"}, {1.8, "-S"}, {3.6, "+F -F -S"}}},
+    {24, {{0.0, "+F -S +S"}, {1.8, "-S +S"}, {3.6, "+F -F -S +S"}}},
+    {25, {{0.0, "+F +S -S"}, {1.8, "+S -S"}, {3.6, "+F -F +S -S"}}},
+    {26, {{0.0, "+F +S"}, {1.8, "+S"}, {3.6, "+F -F +S"}}},
+    {27, {{0.0, "-F +F +S"}, {1.8, "+S"}, {3.6, "-F +S"}}},
+    {28, {{0.0, "-F +F +S -S"}, {1.8, "+S -S"}, {3.6, "-F +S -S"}}},
+    {29, {{0.0, "-F +F -S +S"}, {1.8, "-S +S"}, {3.6, "-F -S +S"}}},
+    {30, {{0.0, "-F +F -S"}, {1.8, "-S"}, {3.6, "-F -S"}}},
+};
+INSTANTIATE_TEST_SUITE_P(By, NimotionPrinting, testing::ValuesIn(kNimotionPrinted),
+                         [](const auto& tested) {
+                           return "Method" + std::to_string(tested.param.method);
+                         });
+
 }  // namespace
 }  // namespace cia402
