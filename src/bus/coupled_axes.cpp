@@ -44,6 +44,8 @@ class CoupledJoint final : public Joint {
   const CoupledAxes* coupling() const override { return axes_; }
   void show(JointState& state) const override { axes_->show(index_, state); }
   bool known() const override { return !std::isnan(axes_->positionOf(index_)); }
+  bool partIsLed() const override { return !axes_->axesRest(); }
+  bool partMoves() const override { return axes_->axesMove(); }
   double position() const override { return axes_->positionOf(index_); }
   Time stamp() const override { return axes_->stampOf(index_); }
   double resolution() const override { return axes_->resolutionOf(index_); }
@@ -316,6 +318,14 @@ bool CoupledAxes::late() const {
 bool CoupledAxes::axesRest() const {
   return std::all_of(units_.begin(), units_.end(),
                      [](const AxisUnit* unit) { return unit->axis.setPoint().atRest(); });
+}
+
+bool CoupledAxes::axesMove() const {
+  return std::any_of(units_.begin(), units_.end(), [](const AxisUnit* unit) {
+    const drive::AxisState& state = unit->axis.state();
+    return state.feedback_valid &&
+           std::fabs(state.velocity) >= unit->axis.config().standstill_velocity;
+  });
 }
 
 std::string CoupledAxes::refusal(const std::string& group) const {

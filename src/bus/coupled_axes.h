@@ -53,6 +53,8 @@ class CoupledAxes {
   void stop(std::size_t joint, Duration over) { sent_[joint].stop(over); }
   // Of all:
   bool ready() const;
+  bool axesRest() const;  ///< nothing that was sent to them moves them
+  bool axesMove() const;  ///< one that is heard does
   bool late() const;
   std::string refusal(const std::string& group) const;
   drive::ProcedureKind stoppedBy() const;
@@ -66,7 +68,6 @@ class CoupledAxes {
  private:
   bool takesPositions() const;
   bool broken() const;
-  bool axesRest() const;
   void stopBoth(const std::string& why, Time now, EventSink& events);
   void begin();
   void breakOff();

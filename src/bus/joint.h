@@ -39,6 +39,9 @@ class Joint {
   virtual void show(JointState& state) const = 0;
   /// Its position is known.
   virtual bool known() const = 0;
+  // Of one that is not known: what is heard of the others of its axes.
+  virtual bool partIsLed() const { return false; }  ///< by set-points that are not at rest
+  virtual bool partMoves() const { return false; }  ///< as it tells itself
   virtual double position() const = 0;
   virtual Time stamp() const = 0;
   /// What one unit of the drive's position is, rad or m.

@@ -249,7 +249,11 @@ std::optional<TrajectoryOutcome> TrajectoryRun::standstill(Time now) {
   bool rest_commanded = true;
   for (Member& member : members_) {
     // Something else stops one that was dropped: of that nothing but its motor tells.
-    if (member.dropped && !member.joint->known()) continue;
+    if (member.dropped && !member.joint->known()) {
+      rest_commanded = rest_commanded && !member.joint->partIsLed();
+      if (restless == nullptr && member.joint->partMoves()) restless = &member;
+      continue;
+    }
     // One that was held apart from its set-points may move again as they are called back to it.
     const std::uint32_t given_up = member.joint->sent().givenUp();
     if (std::exchange(member.given_up, given_up) != given_up) member.rest.reset();
