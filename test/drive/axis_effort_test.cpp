@@ -220,7 +220,8 @@ TEST(EffortStream, ThatEndsIsRampedToRestByTheModeThatBrakesOnceThatIsShown) {
   EXPECT_EQ(axis.drive.target_torque, 0);
   EXPECT_EQ(axis.drive.controlword, 0x000F);
   EXPECT_THAT(axis.axis.notice(), HasSubstr("braked and held by mode cyclic_velocity"));
-  EXPECT_THAT(axis.axis.notice(), HasSubstr("enable brings it back into torque"));
+  EXPECT_THAT(axis.axis.notice(),
+              HasSubstr("enable takes it back into torque: enable to go on, or let it coast by "));
   ASSERT_TRUE(axis.runUntil([&] { return axis.drive.mode == 9; }, milliseconds(40)));
   turn(axis.drive, 0);
   const Time taken = axis.now;
