@@ -229,7 +229,8 @@ TEST(Conversion, AnAccelerationMayBeTheTimeToASpeed) {
   EXPECT_EQ(encode(conversion, 0.5 * slow), 20000U) << "bigger is slower";
   EXPECT_NEAR(conversion.highest(), 10000.0 * slow, 1e-6) << "in 1 ms";
   EXPECT_NEAR(conversion.lowest(), slow * 10000.0 / 4294967295.0, 1e-12);
-  EXPECT_TRUE(conversion.reversed());
+  EXPECT_FALSE(conversion.reversed());
+  EXPECT_EQ(conversion.mostRaw(), 1U) << "ms";
   std::uint64_t raw = 7;
   for (const double none :
        {0.0, -slow, 3e4 * slow, std::nan(""), std::numeric_limits<double>::infinity()}) {

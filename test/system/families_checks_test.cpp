@@ -210,10 +210,10 @@ TEST(FamilyLock, IsNamedByEveryWriteThatIsForbidden) {
   Scene scene(loadText(
       familyJoint(kCheckedDm5,
                   ", simulation: {with: {dictionary: [[0x6065, 0, following_error_window, uint32, "
-                  "ro, r, 23860929]]}}")));
+                  "ro, -, 23860929]]}}")));
   ASSERT_TRUE(scene.boot(std::chrono::seconds(20))) << scene.told();
   const bus::Answer refused =
-      scene.call(bus::WriteObjectCommand{"joint", "following_error_window", "0.1"});
+      scene.call(bus::WriteObjectCommand{"joint", "following_error_window", "1000"});
   EXPECT_FALSE(refused.success);
   EXPECT_THAT(
       refused.message,

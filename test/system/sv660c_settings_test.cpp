@@ -54,14 +54,8 @@ TEST(Sv660cUnits, MayBeSpeedsInRpmAndAccelerationsAsTimes) {
   Sv660cReady scene(sv660cJoint(", unit_system: 1", sv660cDelivered(units)), "pv");
   // 4 rad/s^2 of the joint are 200 of the motor, 1909.86 rpm/s: 1000 rpm in 523.6 ms.
   EXPECT_EQ(sv660cNumber(scene, 0x6083), 524U);
-  double fastest = 0.0, before = 0.0;
-  for (int i = 0; i < 50; ++i) {
-    scene.stream("joint", 1.0, 4ms);
-    fastest = std::max(fastest, (scene.velocity("joint") - before) / 0.004);
-    before = scene.velocity("joint");
-  }
-  EXPECT_LT(before, 0.9) << "1 rad/s takes 0.25 s";
-  EXPECT_LT(fastest, 4.3) << "rad/s^2";
+  scene.stream("joint", 1.0, 100ms);
+  EXPECT_NEAR(scene.velocity("joint"), 0.4, 0.1) << "4 rad/s^2 for 0.1 s, and what is under way";
   scene.stream("joint", 1.0, 300ms);
   // 1 rad/s are 50 of the motor, 477.46 rpm.
   EXPECT_EQ(sv660cNumber(scene, 0x60FF), 47746U);

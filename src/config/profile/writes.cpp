@@ -1,6 +1,7 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "common/text.h"
 #include "config/profile/parts.h"
@@ -125,7 +126,8 @@ void readValue(yaml::Section& section, const DriveProfile& profile, const Object
   if (raw && !readWord(*raw, object, write)) readRaw(*raw, coding, write);
   if (!value || readWord(*value, object, write)) return;
   if (!by_index && !object->from_eds) {
-    write.value = value->number();
+    const bool most = value->isScalar() && value->node().Scalar() == "most";
+    write.value = most ? std::numeric_limits<double>::infinity() : value->number();
     return;
   }
   if (object != nullptr && !object->from_eds && coding.encoding == Encoding::integer &&

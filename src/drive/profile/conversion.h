@@ -60,8 +60,10 @@ class Conversion {
   std::uint64_t highestRaw() const;
   /// Joint units per device unit (resolution); 0 for floats and times.
   double resolution() const;
-  /// True if larger device numbers are smaller joint values.
-  bool reversed() const { return time_ || factor_ < 0.0; }
+  /// The number of the largest joint value, as it is on the wire: of a time the shortest.
+  std::uint64_t mostRaw() const { return time_ ? lowestRaw() : highestRaw(); }
+  /// True if positive device numbers are negative joint values.
+  bool reversed() const { return factor_ < 0.0; }
   /// Joint units of all numbers that the object has, after which it begins anew; 0 for floats and
   /// times, which do not.
   double span() const;

@@ -89,6 +89,7 @@ bool isMagnitude(const NamedWrite& write) {
 
 Result<std::uint64_t> encode(const NamedWrite& write, double value, const Conversion& conversion,
                              const AxisConfig& axis, const std::string& name) {
+  if (std::isinf(value)) return conversion.mostRaw();
   const double wanted = isMagnitude(write) && conversion.reversed() ? -value : value;
   std::uint64_t raw = 0;
   if (conversion.toDevice(wanted, raw)) return raw;

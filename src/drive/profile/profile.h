@@ -149,8 +149,9 @@ enum class StopBy : std::uint8_t {
 /// A write by profile name: value in the object's unit system (SI after conversion) or raw.
 /// drive/profile/named_write.h turns it into a number for one axis.
 struct NamedWrite {
-  std::string object;               ///< name in the profile, or "6065:00"
-  std::optional<double> value;      ///< in SI units of the joint if the object has a quantity
+  std::string object;  ///< name in the profile, or "6065:00"
+  /// In SI units of the joint if the object has a quantity; infinity: the most that it holds.
+  std::optional<double> value;
   std::optional<std::int64_t> raw;  ///< as it is
   /// A value of the configuration instead: "limits.lower", "limits.upper" (the one that is the
   /// smaller or larger number in the drive), "limits.velocity", "limits.acceleration",
