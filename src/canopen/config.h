@@ -115,6 +115,7 @@ struct NodeConfig {
   std::string lacking_remedy;
   SdoOptions sdo;
   SdoChannel sdo_channel;  ///< COB-IDs other than 600h and 580h + node-ID
+  std::string lock;        ///< what else may be why the device forbids writes, for messages
   /// It must not get NMT reset node: its communication is reset where it has to start anew.
   bool reset_node_allowed = true;
   bool reset_does_nothing = false;                 ///< it takes the command, and goes on as it is

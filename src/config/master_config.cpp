@@ -182,7 +182,7 @@ NodeConfig makeNode(const BusConfig& bus, const DeviceConfig& device,
   for (const AxisConfig* axis : axes) addBrakes(*axis, node);
   addSyncWindow(bus, node);
   for (const AxisConfig* axis : axes) addAxis(*axis, node, problems);
-  node.sdo.lock = lockOf(*axes.front()->profile);
+  node.lock = lockOf(*axes.front()->profile);
   node.lacking_remedy = "`lacks` of axes/" + device.name + " says that this is right";
   return node;
 }

@@ -11,9 +11,7 @@ class SdoLockTest : public test::SdoClientFixture {};
 
 // 2002:16 = 2 of a drive whose parameters are locked: it forbids writes, whatever the value.
 TEST_F(SdoLockTest, a_write_that_is_forbidden_names_what_may_lock_it) {
-  SdoOptions locked = options();
-  locked.lock = "parameters may be locked";
-  SdoClient with_lock{1, peer, locked};
+  SdoClient with_lock{1, peer, options(), {}, nullptr, "parameters may be locked"};
   struct Case {
     const char* answer;
     bool forbidden;

@@ -34,7 +34,7 @@ Node::Impl::Impl(const NodeConfig& node_config, const MasterConfig& master, can:
       config(node_config),
       sink(frame_sink),
       deadlines_changed(changed),
-      sdo(config.node_id, sink, config.sdo, config.sdo_channel, wire),
+      sdo(config.node_id, sink, config.sdo, config.sdo_channel, wire, config.lock),
       consumer(config.heartbeat_timeout),
       guard(config.node_id, config.guard_time, config.life_time_factor),
       boot(config, master, sdo, sink, shared_turns != nullptr ? *shared_turns : own_turns),

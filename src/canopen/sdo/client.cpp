@@ -23,9 +23,10 @@ std::string milliseconds(Duration duration) {
 }  // namespace
 
 SdoClient::SdoClient(NodeId node, can::Sink& sink, SdoOptions defaults, SdoChannel channel,
-                     can::Pacer* pacer)
+                     can::Pacer* pacer, std::string lock)
     : node_(node),
       defaults_(defaults),
+      lock_(std::move(lock)),
       answer_id_(channel.answer != 0 ? channel.answer : 0x580U + node),
       exchange_(sink, pacer, channel.request != 0 ? channel.request : 0x600U + node) {}
 
@@ -203,7 +204,7 @@ SdoReaction SdoClient::onFenceAnswer(const can::Frame& frame, Time now) {
 std::string SdoClient::refusalText(std::uint32_t abort_code) const {
   std::string text = "the drive refused: " + abortText(abort_code);
   const bool forbidden = !queue_.front().isUpload() && abort_code::saysForbidden(abort_code);
-  if (forbidden && !defaults_.lock.empty()) append(text, defaults_.lock);
+  if (forbidden && !lock_.empty()) append(text, lock_);
   return text;
 }
 

@@ -40,8 +40,9 @@ class SdoClient final : public fieldbus::ObjectAccess {
   /// @param sink where requests go; must outlive the client.
   /// @param pacer the same sink where it can tell how much waits in it, for block downloads; must
   /// outlive the client. Without it the segments of a sub-block are sent all at once.
+  /// @param lock what else may be why the device forbids a download, for messages
   SdoClient(NodeId node, can::Sink& sink, SdoOptions defaults = {}, SdoChannel channel = {},
-            can::Pacer* pacer = nullptr);
+            can::Pacer* pacer = nullptr, std::string lock = {});
 
   SdoClient(const SdoClient&) = delete;  ///< what is on the wire knows where it is
   SdoClient& operator=(const SdoClient&) = delete;
@@ -135,6 +136,7 @@ class SdoClient final : public fieldbus::ObjectAccess {
 
   NodeId node_;
   SdoOptions defaults_;
+  std::string lock_;
   std::uint32_t answer_id_;
   SdoQueue queue_;
   SdoExchange exchange_;

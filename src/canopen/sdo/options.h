@@ -3,7 +3,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <string>
 
 #include "fieldbus/object_access.h"
 
@@ -21,8 +20,6 @@ struct SdoOptions : fieldbus::AccessOptions {
   Block block = Block::automatic;
   std::size_t block_threshold = 256;                   ///< bytes
   std::size_t longest_upload = std::size_t{16} << 20;  ///< bytes; more are refused (0x05040005)
-  /// What else may be why the device forbids a download, for messages: its parameters are locked.
-  std::string lock;
 };
 
 /// The two COB-IDs of an SDO channel (1200h and on), 11 bits; 0: that of the predefined connection
