@@ -217,36 +217,25 @@ constexpr char kThreeSwitches[] =
     "{object: di1_function, raw: 36}, {object: di2_function, raw: 35}, {object: di3_function, raw: "
     "32}, {object: di4_function, raw: 0}";
 
-/// The lines of a method, its starts in turns of the motor and what is printed for each. Limit
-/// switches at -2 and 5 and the home switch from 1 to 2.6, index pulses 0.8 turns after each whole
-/// one: from the edges of the home switch there is time to become slow before the next.
-struct Dm5Printed {
-  int method;
-  std::vector<std::pair<double, const char*>> ways;
-};
-void PrintTo(const Dm5Printed& printed, std::ostream* out) { *out << "method " << printed.method; }
-
-class Dm5Printing : public testing::TestWithParam<Dm5Printed> {};
+/// Limit switches at -2 and 5 and the home switch from 1 to 2.6, index pulses 0.8 turns after each
+/// whole one: from the edges of the home switch there is time to become slow before the next.
+class Dm5Printing : public testing::TestWithParam<PrintedHoming> {};
 
 TEST_P(Dm5Printing, SaysWhichWaysAndHowFastTheMotorTurns) {
   const std::string switches = ", write: [" + std::string(kThreeSwitches) + "]";
   for (const auto& [start, printed] : GetParam().ways) {
-    Scene scene(loadText(
+    SCOPED_TRACE(start);
+    expectHomingWays(
         replaced(homingJoint({kHomingDm5, switches.c_str(), {GetParam().method, start, 0.0}}),
-                 "index_offset: 0.3", "index_offset: 0.8")));
-    ASSERT_TRUE(scene.boot(20s)) << scene.told();
-    HomingWays ways;
-    scene.watch([&] { ways.see(scene.velocity("joint")); });
-    const bus::Answer homed = scene.procedure(ProcedureKind::home, "joint");
-    ASSERT_TRUE(homed.success) << homed.message << scene.told();
-    EXPECT_EQ(ways.said(), printed) << "from " << start;
+                 "index_offset: 0.3", "index_offset: 0.8"),
+        printed);
   }
 }
 
 // [L2241-2669]; before, on and behind the switch, and by 33 and 34 with an index pulse ahead, at
 // one and with none before the limit switch.
 constexpr double kRear = 0.0, kOnSwitch = 1.7, kFront = 3.6, kIndex = 1.8;
-const Dm5Printed kDm5Printed[] = {
+const PrintedHoming kDm5Printed[] = {
     {1, {{kRear, "-F +S"}, {-2.4, "+S"}}},
     {2, {{kFront, "+F -S"}, {5.4, "-S"}}},
     {3, {{kRear, "+F -S"}, {kOnSwitch, "-S"}}},
@@ -278,9 +267,7 @@ const Dm5Printed kDm5Printed[] = {
     {33, {{kOnSwitch, "-S"}, {kIndex, ""}, {-1.6, "-S +S -S"}}},
     {34, {{kOnSwitch, "+S"}, {kIndex, ""}, {4.9, "+S -S +S"}}},
 };
-INSTANTIATE_TEST_SUITE_P(By, Dm5Printing, testing::ValuesIn(kDm5Printed), [](const auto& tested) {
-  return "Method" + std::to_string(tested.param.method);
-});
+INSTANTIATE_TEST_SUITE_P(By, Dm5Printing, testing::ValuesIn(kDm5Printed), printedHomingName);
 
 constexpr char kClosedAtRest[] =  // contacts of DI1 to DI3
     ", with: {terminals: {normally_closed: [0, 1, 2]}}";

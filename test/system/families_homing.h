@@ -7,6 +7,7 @@
 #include <ostream>
 #include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "system/families_scene.h"
@@ -144,5 +145,29 @@ class HomingWays {
   double highest_ = 0.0;               ///< speed since it turned, rad/s
   int held_ = 0;                       ///< the slow speed, ms
 };
+
+/// The lines of a method in a manual: its starts in turns of the motor, and what is printed for
+/// each, as HomingWays says it.
+struct PrintedHoming {
+  int method;
+  std::vector<std::pair<double, const char*>> ways;
+};
+inline void PrintTo(const PrintedHoming& printed, std::ostream* out) {
+  *out << "method " << printed.method;
+}
+inline std::string printedHomingName(const testing::TestParamInfo<PrintedHoming>& tested) {
+  return "Method" + std::to_string(tested.param.method);
+}
+
+/// Searches home, and compares what the motor does with that.
+inline void expectHomingWays(const std::string& joint, const char* printed) {
+  Scene scene(loadText(joint));
+  ASSERT_TRUE(scene.boot(std::chrono::seconds(20))) << scene.told();
+  HomingWays ways;
+  scene.watch([&] { ways.see(scene.velocity("joint")); });
+  const bus::Answer homed = scene.procedure(drive::ProcedureKind::home, "joint");
+  ASSERT_TRUE(homed.success) << homed.message << scene.told();
+  EXPECT_EQ(ways.said(), printed);
+}
 
 }  // namespace cia402

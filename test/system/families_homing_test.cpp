@@ -140,33 +140,19 @@ INSTANTIATE_TEST_SUITE_P(Generic, FamilyHomingBehind,
                          testing::ValuesIn(withFamily(kByTheBookPp, kAsDelivered, homesBehind())),
                          familyMethodName);
 
-/// The lines of a method of the NiMotion, its starts in turns of the motor and what is printed for
-/// each, as HomingWays says it; switches as those of FamilyHome.
-struct NimotionPrinted {
-  int method;
-  std::vector<std::pair<double, const char*>> ways;
-};
-void PrintTo(const NimotionPrinted& printed, std::ostream* out) {
-  *out << "method " << printed.method;
-}
-
-class NimotionPrinting : public testing::TestWithParam<NimotionPrinted> {};
+/// Switches as those of FamilyHome.
+class NimotionPrinting : public testing::TestWithParam<PrintedHoming> {};
 
 TEST_P(NimotionPrinting, SaysWhichWaysAndHowFastTheMotorTurns) {
   for (const auto& [start, printed] : GetParam().ways) {
-    Scene scene(
-        loadText(homingJoint({kStepperPp, kNimotionSwitches, {GetParam().method, start, 0.0}})));
-    ASSERT_TRUE(scene.boot(20s)) << scene.told();
-    HomingWays ways;
-    scene.watch([&] { ways.see(scene.velocity("joint")); });
-    const bus::Answer homed = scene.procedure(ProcedureKind::home, "joint");
-    ASSERT_TRUE(homed.success) << homed.message << scene.told();
-    EXPECT_EQ(ways.said(), printed) << "from " << start;
+    SCOPED_TRACE(start);
+    expectHomingWays(homingJoint({kStepperPp, kNimotionSwitches, {GetParam().method, start, 0.0}}),
+                     printed);
   }
 }
 
 // [L1208-1346]
-const NimotionPrinted kNimotionPrinted[] = {
+const PrintedHoming kNimotionPrinted[] = {
     {17, {{0.0, "-F +S"}, {-2.4, "+S"}}},
     {18, {{3.6, "+F -S"}, {5.4, "-S"}}},
     {19, {{0.0, "+F -S"}, {1.8, "-S"}}},
@@ -183,9 +169,7 @@ const NimotionPrinted kNimotionPrinted[] = {
     {30, {{0.0, "-F +F -S"}, {1.8, "-S"}, {3.6, "-F -S"}}},
 };
 INSTANTIATE_TEST_SUITE_P(By, NimotionPrinting, testing::ValuesIn(kNimotionPrinted),
-                         [](const auto& tested) {
-                           return "Method" + std::to_string(tested.param.method);
-                         });
+                         printedHomingName);
 
 }  // namespace
 }  // namespace cia402

@@ -17,9 +17,11 @@ namespace {
 
 /// The place to stand at was not taken: what waits in the drive would be gone to as the halt ends.
 [[gnu::cold]] void leaveHalt(AxisCore& axis) {
-  axis.notices().fail(axis.who() +
-                      ": the drive did not take the place where it stands, so that it would go on "
-                      "as soon as the halt ends: it is switched off; enable begins anew");
+  axis.notices().fail(
+      axis.who() +
+      ": the drive did not take the place where it stands, so that it would go on "
+      "as soon as the halt ends: it is switched off. enable begins anew; "
+      "where it happens again, look why the drive takes no set-point while it is halted");
   axis.setGoal(Goal::quick_stop);
 }
 
