@@ -27,7 +27,7 @@ struct ProcedureAnswer : testing::Test {
 TEST_F(ProcedureAnswer, OfAHaltTellsOfAnAxisOfWhichNothingIsKnownAnyMore) {
   const auto elbowMoves = [&](Duration duration) {
     for (const Time end = world.now + duration; world.now < end; world.run(4ms)) {
-      world.drives[1].disturbance += 400;  // 1 rad/s
+      world.drives[1].disturbance += 200;  // 0.5 rad/s
     }
   };
   elbowMoves(20ms);
@@ -50,7 +50,7 @@ TEST_F(ProcedureAnswer, OfAHaltIsNoneTheWorseForAnotherStop) {
   const auto halting = world.begin(ProcedureKind::halt);
   const auto elbowMoves = [&](Duration duration) {
     for (const Time end = world.now + duration; world.now < end; world.run(4ms)) {
-      world.drives[1].disturbance += 400;  // 1 rad/s
+      world.drives[1].disturbance += 200;  // 0.5 rad/s
     }
   };
   elbowMoves(100ms);

@@ -309,10 +309,11 @@ class FakeDrive {
   }
 
   double quickStop(double dt) const {
+    if (coast != 0.0) return coast;
     const double drop = quick_stop_deceleration * dt;
     if (quick_velocity_ > drop) return quick_velocity_ - drop;
     if (quick_velocity_ < -drop) return quick_velocity_ + drop;
-    return coast;
+    return 0.0;
   }
 
   void profilePosition(double dt, bool edge4) {

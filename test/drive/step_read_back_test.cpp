@@ -26,14 +26,14 @@ DriveProfile withTerminals() {
 }
 
 TEST(EachOnce, RefusesANumberThatStandsTwiceUnlessItMay) {
-  struct Row {
+  struct Numbers {
     std::uint64_t one, two, three;
     const char* told;
   };
-  for (const Row& row :
-       {Row{1, 2, 3, nullptr}, Row{0, 0, 0, nullptr}, Row{9, 5, 9, nullptr},
-        Row{4, 0, 4, "one (2003:00) and three (2005:00) are both 4, which no two may be"},
-        Row{9, 7, 7, "two (2004:00) and three (2005:00) are both 7, which no two may be"}}) {
+  for (const Numbers& row :
+       {Numbers{1, 2, 3, nullptr}, Numbers{0, 0, 0, nullptr}, Numbers{9, 5, 9, nullptr},
+        Numbers{4, 0, 4, "one (2003:00) and three (2005:00) are both 4, which no two may be"},
+        Numbers{9, 7, 7, "two (2004:00) and three (2005:00) are both 7, which no two may be"}}) {
     Bench bench(testConfig(withTerminals()));
     bench.drive.dictionary[{0x2003, 0}] = {row.one, 2};
     bench.drive.dictionary[{0x2004, 0}] = {row.two, 2};

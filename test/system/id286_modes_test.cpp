@@ -94,10 +94,10 @@ TEST(Id286StartAt0F, IsWhatTheSimulatedDriveDoes) {
   ASSERT_TRUE(scene.procedure(ProcedureKind::enable).success) << scene.told();
   scene.run(100ms);
   scene.clear();
-  scene.drive("joint").dictionary().find({0x607A, 0})->number = 5000;
+  scene.drive("joint").dictionary().find({0x607A, 0})->number = 2000;
   scene.run(2s);
   EXPECT_THAT(scene.controlwords, testing::Each(0x0FU));
-  EXPECT_NEAR(scene.position("joint"), 5000.0 * oneCount(kId286InPp), 1e-4);
+  EXPECT_NEAR(scene.position("joint"), 2000.0 * oneCount(kId286InPp), 1e-4);
 }
 
 // Each word in SYNC periods of its own, or a drive that takes the last one would see no edge.

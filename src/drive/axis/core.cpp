@@ -47,7 +47,7 @@ void AxisCore::readFeedback(Time now) {
 }
 
 void AxisCore::supervise(Time now) {
-  stops_.watch();
+  stops_.watch(now);
   const bool late = now > written_ + 2 * config().cycle && written_ != Time{};
   if (late) generator_.lateCycle(now);
   if (!deviceReady()) return;

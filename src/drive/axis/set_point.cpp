@@ -25,6 +25,7 @@ void SetPoint::adopt(const motion::JointLimits& limits, double deceleration) {
 }
 
 void SetPoint::rest(SetPointKind kind, double value) {
+  if (kind != kind_) goals_ = {value, value};
   kind_ = kind;
   value_ = value;
   velocity_ = 0.0;
@@ -85,6 +86,8 @@ void SetPoint::overtake(double position, double velocity) {
 }
 
 void SetPoint::shift(double by) {
+  goals_.lowest += by;
+  goals_.highest += by;
   if (kind_ != SetPointKind::stream && kind_ != SetPointKind::goal) return;
   value_ += by;
   has_given_ = false;
@@ -119,6 +122,9 @@ void SetPoint::follow() {
   if (kind_ == SetPointKind::stream) {
     next = std::clamp(next, value_ - furthest_, value_ + furthest_);
     velocity_ = (next - value_) / cycle_s_;
+  } else if (kind_ == SetPointKind::goal) {
+    goals_.lowest = std::fmin(goals_.lowest, next);
+    goals_.highest = std::fmax(goals_.highest, next);
   }
   value_ = next;
 }

@@ -82,6 +82,14 @@ class SetPoint {
     double position, velocity;
   };
   Motion expected(Duration ahead) const;
+  /// The goals since the axis came to one of them at rest, and where it was then: the drive may
+  /// take them one by one, and goes to any of them. rad or m
+  struct Goals {
+    double lowest = kNone, highest = kNone;
+  };
+  const Goals& goals() const { return goals_; }
+  /// It has come to the last one.
+  void forgetGoals() { goals_ = {value_, value_}; }
   /// When the last set-point left that moved the axis, or could have.
   Time movedAt() const { return moved_at_; }
   /// Grows with all that ends a motion, other than who gives its set-points: a stop, another zero,
@@ -108,6 +116,7 @@ class SetPoint {
   double value_ = kNone, velocity_ = 0.0;
   double given_ = kNone;
   bool has_given_ = false, stopping_ = false, leased_ = false;
+  Goals goals_;
   motion::StopRamp ramp_;
   Time moved_at_ = Time::min();
   std::uint32_t breaks_ = 0, interruptions_ = 0, given_up_ = 0;

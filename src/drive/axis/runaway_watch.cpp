@@ -1,0 +1,115 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include "drive/axis/runaway_watch.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace cia402::drive {
+namespace {
+
+/// In multiples of the velocity below which an axis stands: what is faster is no noise, and what
+/// nobody moves so fast by hand.
+constexpr double kClearly = 3.0, kFast = 100.0;
+/// It may be gone so far away, in standstill velocity times s; a held one farther.
+constexpr double kFar = 3.0, kFarHeld = 10.0;
+/// Faster than it is led by more than that it is not led.
+constexpr double kAhead = 1.25;
+/// Faster than it was by more than that it is accelerated, for a window is a few positions long,
+/// each of them late or early by a cycle.
+constexpr double kFaster = 1.3;
+/// A motor that ran away, and gets faster by that in a quick stop, is not braked; nor one that has
+/// not got slower by that in the end.
+constexpr double kAgain = 1.1, kSlower = 0.95;
+constexpr int kReactionWindows = 2, kBrakingWindows = 8;
+/// s, until a drive does what it is told; it goes on with what it was told before.
+constexpr double kReaction = 0.1;
+constexpr Duration kShortest{std::chrono::milliseconds(20)};
+constexpr int kCycles = 5, kWindows = 5;  ///< in a window; without a position nothing is known
+
+}  // namespace
+
+RunawayWatch::RunawayWatch(double standstill, double resolution, double acceleration,
+                           Duration cycle)
+    : window_(std::max(kShortest, kCycles * cycle)),
+      clearly_(kClearly * standstill + 2.0 * resolution / toSeconds(window_)),
+      fast_(kFast * standstill),
+      distance_(kFar * standstill + 4.0 * resolution),
+      acceleration_(acceleration) {}
+
+void RunawayWatch::forget() {
+  started_ = measured_ = false;
+  way_ = velocity_ = velocity_before_ = 0.0;
+}
+
+/// @return true at the end of a window
+bool RunawayWatch::measure(double position, Time stamp) {
+  const Duration took = stamp - stamp_;
+  if (started_ && took < window_ / 2) return false;
+  const bool known = started_ && took <= kWindows * window_;
+  if (!known) forget();
+  velocity_before_ = velocity_;
+  if (known) velocity_ = (position - position_) / toSeconds(took);
+  if (known && !measured_) velocity_before_ = velocity_;
+  measured_ = known;
+  position_ = position;
+  stamp_ = stamp;
+  started_ = true;
+  return known;
+}
+
+bool RunawayWatch::explained(double position, const Led& led) const {
+  if (std::fabs(velocity_) <= std::max(clearly_, led.speed)) return true;
+  const bool along = velocity_ * led.velocity > 0.0 &&
+                     std::fabs(velocity_) <= kAhead * std::fabs(led.velocity) + clearly_;
+  return along || (velocity_ > 0.0 ? position < led.highest : position > led.lowest);
+}
+
+bool RunawayWatch::runsAway(double position, Time stamp, const Led& led) {
+  const double before = position_;
+  if (!measure(position, stamp)) return false;
+  if (explained(position, led)) {
+    way_ = 0.0;
+    return false;
+  }
+  const double way = std::copysign(1.0, velocity_);
+  if (way_ != way) {  // what is seen once may be a leap of what is measured
+    way_ = way;
+    from_ = before;
+    speed_ = std::max(0.0, way * velocity_before_);
+    return false;
+  }
+  const double gone = std::fabs(position - from_), speed = std::fabs(velocity_);
+  const double far = distance_ + kReaction * speed_, turn = speed_ * speed_ / acceleration_;
+  const double faster = kFaster * speed_ + clearly_, sets_off = kReaction * acceleration_;
+  if (gone > far + turn && speed <= faster) {  // it turns back, or coasts
+    from_ = position;
+    speed_ = speed;
+    return false;
+  }
+  const bool away = (gone > far && speed > faster + sets_off) || gone > far + turn;
+  return away && (led.on || (gone > kFarHeld / kFar * distance_ && speed > fast_));
+}
+
+void RunawayWatch::beginStop(Time now, bool runs_away) {
+  stop_ = now;
+  ran_away_ = runs_away;
+  judged_ = 0;
+  speed_ = began_ = std::fabs(velocity_);
+  way_ = 0.0;
+}
+
+bool RunawayWatch::escapes(double position, Time stamp) {
+  if (!measure(position, stamp) || stamp < stop_ + kReactionWindows * window_) return false;
+  const double speed = std::fabs(velocity_);
+  if (ran_away_ && speed > kAgain * speed_) return true;
+  if (ran_away_ && stamp >= stop_ + kBrakingWindows * window_ && speed > kSlower * began_) {
+    return true;
+  }
+  const int judged = judged_++;
+  if (judged > 1 && speed > kFaster * speed_ + clearly_) return true;
+  // The drive brakes by the second one.
+  speed_ = judged > 1 || ran_away_ ? std::min(speed_, speed) : speed;
+  return false;
+}
+
+}  // namespace cia402::drive

@@ -1,0 +1,194 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include "drive/axis/runaway_watch.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <optional>
+
+namespace cia402::drive {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr double kStandstill = 0.01;   // rad/s
+constexpr double kCount = 1e-4;        // rad
+constexpr double kAcceleration = 4.0;  // rad/s^2
+constexpr Duration kCycle = 4ms;
+
+double seconds(Time time) { return toSeconds(time.time_since_epoch()); }
+
+/// A joint that is looked at as an axis does, and moves as is said.
+struct Watched {
+  RunawayWatch watch{kStandstill, kCount, kAcceleration, kCycle};
+  /// @return where it is, in whole counts, when that is noticed; nothing: it is not, within 3 s
+  std::optional<double> noticed(const std::function<double(double)>& position,
+                                const std::function<RunawayWatch::Led(double)>& led) {
+    for (Time now{}; now < Time{} + 3s; now += kCycle) {
+      const double at = std::round(position(seconds(now)) / kCount) * kCount;
+      if (now < next_) continue;
+      next_ = now + watch.window();
+      if (watch.runsAway(at, now, led(seconds(now)))) return at;
+    }
+    return {};
+  }
+
+ private:
+  Time next_{};
+};
+
+RunawayWatch::Led turning(double velocity) {
+  RunawayWatch::Led led;
+  led.velocity = velocity;
+  led.on = true;
+  return led;
+}
+RunawayWatch::Led to(double lowest, double highest, bool on = true) {
+  RunawayWatch::Led led;
+  led.lowest = lowest;
+  led.highest = highest;
+  led.on = on;
+  return led;
+}
+RunawayWatch::Led to(double place) { return to(place, place); }
+
+/// Where a motor is that accelerates from rest, rad/s^2.
+std::function<double(double)> accelerating(double acceleration) {
+  return [=](double t) { return 0.5 * acceleration * t * t; };
+}
+
+TEST(RunawayWatch, NoticesAMotorThatTurnsTheOtherWay) {
+  for (const double acceleration : {1.0, 10.0, 100.0}) {
+    Watched joint;
+    const auto at = joint.noticed(accelerating(-acceleration), [](double) { return turning(0.3); });
+    ASSERT_TRUE(at) << acceleration;
+    // Twice the 0.03 rad that may be an error, or three windows, whichever is more.
+    EXPECT_GE(*at, -std::max(0.07, 0.5 * acceleration * 0.06 * 0.06) - kCount) << acceleration;
+  }
+}
+
+TEST(RunawayWatch, NoticesAMotorThatGoesAwayFromWhereItIsLed) {
+  for (const double place : {0.3, 0.0}) {
+    Watched joint;
+    const auto at = joint.noticed(accelerating(-20.0), [=](double) { return to(place); });
+    ASSERT_TRUE(at) << place;
+    EXPECT_GT(*at, -0.1);
+  }
+}
+
+TEST(RunawayWatch, LeavesOneAloneThatIsLedThere) {
+  Watched to_a_place, on;
+  EXPECT_FALSE(to_a_place.noticed(accelerating(20.0), [](double) { return to(100.0); }));
+  EXPECT_FALSE(on.noticed([](double t) { return 0.5 * t; }, [](double) { return turning(0.45); }));
+}
+
+// A drive that takes its goals one by one goes to each of them.
+TEST(RunawayWatch, LeavesOneAloneThatGoesToAnEarlierGoal) {
+  Watched joint;
+  EXPECT_FALSE(joint.noticed([](double t) { return -0.5 * std::min(t, 1.0); },
+                             [](double) { return to(-0.5, 0.5); }));
+}
+
+// From 2 rad/s to where it came from: it brakes first.
+TEST(RunawayWatch, LeavesOneAloneThatTurnsBack) {
+  const auto back = [](double t) {
+    const double braked = std::min(std::max(0.0, t - 0.5), 1.0);  // for 1 s, to -2 rad/s
+    const double gone_back = 2.0 * std::max(0.0, t - 1.5);
+    return 2.0 * std::min(t, 0.5) + 2.0 * braked - 0.5 * kAcceleration * braked * braked -
+           gone_back;
+  };
+  Watched by_velocity, to_a_place;
+  EXPECT_FALSE(by_velocity.noticed(back, [](double t) { return turning(t < 0.5 ? 2.0 : -2.0); }));
+  EXPECT_FALSE(to_a_place.noticed(back, [](double t) { return to(t < 0.5 ? 2.0 : -9.0); }));
+}
+
+TEST(RunawayWatch, LeavesOneAloneThatCoasts) {
+  Watched joint;
+  EXPECT_FALSE(joint.noticed([](double t) { return 2.0 * (1.0 - std::exp(-t)); },
+                             [](double) { return turning(0.0); }));
+}
+
+// It swings by 0.2 rad around its place, with 3 rad/s there.
+TEST(RunawayWatch, LeavesOneAloneThatSwings) {
+  Watched joint;
+  EXPECT_FALSE(joint.noticed([](double t) { return 0.2 * std::exp(-t) * std::sin(15.0 * t); },
+                             [](double) { return to(0.0); }));
+}
+
+TEST(RunawayWatch, LeavesOneAloneThatIsPushedByHand) {
+  Watched slowly, on_its_way;
+  const auto pushed = [](double t) { return 0.25 * t * t; };  // 1 rad/s after 2 s
+  EXPECT_FALSE(slowly.noticed([&](double t) { return pushed(std::min(t, 2.0)); },
+                              [](double) { return to(0.0, 0.0, false); }));
+  EXPECT_TRUE(on_its_way.noticed(pushed, [](double) { return to(0.0, 0.0, true); }));
+}
+
+TEST(RunawayWatch, NoticesAHeldOneThatIsFast) {
+  Watched joint;
+  const auto at = joint.noticed(accelerating(-40.0), [](double) { return to(0.0, 0.0, false); });
+  ASSERT_TRUE(at);
+  EXPECT_LT(*at, -0.1);
+  EXPECT_GT(*at, -0.3);
+}
+
+TEST(RunawayWatch, LeavesASearchForHomeAloneThatIsNoFasterThanItMayBe) {
+  RunawayWatch::Led search;
+  search.on = true;
+  search.speed = 0.6;
+  Watched within, beyond;
+  EXPECT_FALSE(within.noticed([](double t) { return -0.5 * t; }, [&](double) { return search; }));
+  EXPECT_TRUE(beyond.noticed(accelerating(-5.0), [&](double) { return search; }));
+}
+
+// Other coordinates, and a frame that is wrong once.
+TEST(RunawayWatch, TakesALeapForNoMotion) {
+  Watched joint;
+  EXPECT_FALSE(
+      joint.noticed([](double t) { return t < 1.0 ? 0.0 : 3.0; }, [](double) { return to(0.0); }));
+}
+
+TEST(RunawayWatch, KnowsNothingAcrossAGap) {
+  RunawayWatch watch{kStandstill, kCount, kAcceleration, kCycle};
+  EXPECT_FALSE(watch.runsAway(0.0, Time{} + 1s, to(0.0)));
+  EXPECT_FALSE(watch.runsAway(-2.0, Time{} + 2s, to(0.0)));
+  EXPECT_EQ(watch.velocity(), 0.0);
+}
+
+/// A quick stop in which the joint moves so.
+std::optional<double> escapesAt(const std::function<double(double)>& position, bool runs_away) {
+  RunawayWatch watch{kStandstill, kCount, kAcceleration, kCycle};
+  (void)watch.runsAway(position(-0.02), Time{} + 980ms, turning(10.0));
+  (void)watch.runsAway(position(0.0), Time{} + 1s, turning(10.0));
+  watch.beginStop(Time{} + 1s, runs_away);
+  for (Duration later = watch.window(); later < 2s; later += watch.window()) {
+    if (watch.escapes(position(toSeconds(later)), Time{} + 1s + later)) return toSeconds(later);
+  }
+  return {};
+}
+
+TEST(RunawayWatch, AQuickStopThatBrakesIsLeftAlone) {
+  const auto braked = [](double t) { return 2.0 * t - std::max(0.0, t) * std::max(0.0, t); };
+  const auto rested = [&](double t) { return braked(std::min(t, 1.0)); };
+  EXPECT_FALSE(escapesAt(rested, false));
+  EXPECT_FALSE(escapesAt(rested, true));
+}
+
+TEST(RunawayWatch, AQuickStopByWhichTheMotorGetsFasterDoesNotBrakeIt) {
+  const auto faster = [](double t) { return 2.0 * t + 10.0 * t * t; };
+  const auto plain = escapesAt(faster, false), after = escapesAt(faster, true);
+  ASSERT_TRUE(plain);
+  EXPECT_LE(*plain, 0.121);
+  ASSERT_TRUE(after);
+  EXPECT_LE(*after, 0.041);
+}
+
+// A drive may take its time; a motor that ran away before may not.
+TEST(RunawayWatch, AQuickStopByWhichAMotorThatRunsAwayGetsNoSlowerDoesNotBrakeIt) {
+  const auto steady = [](double t) { return 2.0 * t; };
+  EXPECT_FALSE(escapesAt(steady, false));
+  EXPECT_TRUE(escapesAt(steady, true));
+}
+
+}  // namespace
+}  // namespace cia402::drive
