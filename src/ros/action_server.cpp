@@ -12,7 +12,10 @@ namespace cia402::ros_node {
 namespace {
 
 constexpr double kRemembered = 5.0;  // s: actionlib's; a goal that is sent twice runs once
-constexpr unsigned int kQueue = 50;  // messages: actionlib's
+constexpr unsigned int kQueue = 50;  // messages: actionlib's, of which the newest count
+// Messages each of which counts: what clients send while the node gets no processor, and the
+// results of all goals that end at once.
+constexpr unsigned int kEachCounts = 1000;
 
 }  // namespace
 
@@ -29,7 +32,7 @@ void ActionServer<Action>::tick() {
 
 template <typename Action>
 void ActionServer<Action>::initialize() {
-  result_ = node_.advertise<ActionResult>("result", kQueue);
+  result_ = node_.advertise<ActionResult>("result", kEachCounts);
   feedback_ = node_.advertise<ActionFeedback>("feedback", kQueue);
   status_ = node_.advertise<actionlib_msgs::GoalStatusArray>("status", kQueue, true);
   const boost::function<void(const ActionGoalConstPtr&)> on_goal =
@@ -45,8 +48,8 @@ void ActionServer<Action>::initialize() {
             std::min(this->last_cancel_, ros::Time::now() + ros::Duration(kRemembered));
         remember(id->id);
       };
-  goal_ = node_.subscribe<ActionGoal>("goal", kQueue, on_goal);
-  cancel_ = node_.subscribe<actionlib_msgs::GoalID>("cancel", kQueue, on_cancel);
+  goal_ = node_.subscribe<ActionGoal>("goal", kEachCounts, on_goal);
+  cancel_ = node_.subscribe<actionlib_msgs::GoalID>("cancel", kEachCounts, on_cancel);
 }
 
 template <typename Action>

@@ -1,7 +1,9 @@
 #!/usr/bin/python3
 # Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 """Goals of follow_joint_trajectory: how they end, and where the joints are then."""
+import signal
 import statistics
+import time
 
 import actionlib
 import rospy
@@ -252,8 +254,8 @@ class Action(ActionTest):
         self.assertEqual(result.error_code, FollowJointTrajectoryResult.GOAL_TOLERANCE_VIOLATED)
         self.assertAlmostEqual(self.robot.wait_rest("shoulder"), FAR[0], delta=0.001)
 
-    def connect(self, topic, kind):
-        publisher = rospy.Publisher(f"{ACTION}/{topic}", kind, queue_size=10)
+    def connect(self, topic, kind, queue_size=10):
+        publisher = rospy.Publisher(f"{ACTION}/{topic}", kind, queue_size=queue_size)
         self.addCleanup(publisher.unregister)
         wait_until(lambda: publisher.get_num_connections() > 0, f"{topic} is heard")
         return publisher
@@ -288,6 +290,42 @@ class Action(ActionTest):
                          FollowJointTrajectoryResult.SUCCESSFUL)
         for subscriber in subscribers:
             subscriber.unregister()
+
+    def test_of_64_that_have_not_ended_each_has_its_result_and_a_65th_is_refused(self):
+        self.addCleanup(self.stop_within, 0.0)
+        self.stop_within(4.0)
+        results = {}
+        subscriber = rospy.Subscriber(
+            f"{ACTION}/result", FollowJointTrajectoryActionResult,
+            lambda message: results.update({message.status.goal_id.id: message}))
+        self.addCleanup(subscriber.unregister)
+        send = self.connect("goal", FollowJointTrajectoryActionGoal, 100)
+        self.send(goal_of(FAR, 5.0))
+        self.wait_moving()
+        ids = [f"stop {number}" for number in range(1, 65)]
+        self.process.send(signal.SIGSTOP)
+        for goal_id in ids:  # all at once for the node; the trajectory is one of its 64
+            send.publish(FollowJointTrajectoryActionGoal(
+                goal_id=GoalID(id=goal_id, stamp=rospy.Time.now()), goal=goal_of([], 0.0)))
+        time.sleep(0.5)  # until all are on their way
+        self.process.send(signal.SIGCONT)
+        self.result(GoalStatus.PREEMPTED, "stopped by an empty trajectory")
+        wait_until(lambda: set(ids) <= set(results),
+                   lambda: f"a result of each, but of {sorted(set(ids) - set(results))}")
+        refused = [results[goal_id] for goal_id in ids
+                   if results[goal_id].status.status == GoalStatus.REJECTED]
+        self.assertEqual(len(refused), 1)
+        self.assertEqual(refused[0].status.goal_id.id, ids[-1])
+        self.assertEqual(refused[0].result.error_code, FollowJointTrajectoryResult.INVALID_GOAL)
+        self.assertEqual(refused[0].result.error_string,
+                         "arm: 64 goals have not ended yet; wait for their results")
+        for goal_id in ids[:-1]:
+            self.assertEqual(results[goal_id].status.status, GoalStatus.SUCCEEDED, goal_id)
+        self.finish(goal_of(NEAR, 3.0))  # there is room again
+
+    def stop_within(self, seconds):
+        rospy.set_param("/robot/groups/arm/stop_trajectory_duration", seconds)
+        self.succeed("reload")
 
     def test_for_some_joints_leaves_the_others_to_theirs(self):
         other = self.make_client()
