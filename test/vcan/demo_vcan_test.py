@@ -2,80 +2,19 @@
 # Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 """The demo robot on vcan0: five drive families in a process of their own, bus_node in another. Where a
 motor stands is read from its drive's own TPDO."""
-import math
-import os
-import struct
-import sys
 import time
 
-import actionlib
 from actionlib_msgs.msg import GoalStatus
-from control_msgs.msg import (FollowJointTrajectoryAction, FollowJointTrajectoryGoal,
-                              JointTrajectoryControllerState)
-from trajectory_msgs.msg import JointTrajectoryPoint
+from control_msgs.msg import JointTrajectoryControllerState
+from demo_robot import (ERROR, JOINTS, OK, DemoRobotTest, main, point_goal, rospy,  # noqa: E402
+                        wait_until)
 
-sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "ros"))
-from robot_client import (ERROR, OK, Process, Robot, RobotTest, main, rospy,  # noqa: E402
-                          rosparam, package_file, wait_until)
-from wire import Wire  # noqa: E402
-
-CONFIG = "config/robots/demo.yaml"
-JOINTS = ["shoulder", "elbow", "wrist", "tool", "gripper"]
-NODES = {joint: node for node, joint in enumerate(JOINTS, 1)}
-TURN = 2.0 * math.pi
-# rad of the joint by what its drive counts: counts of a turn, gear and direction of the file.
-RAD = {"shoulder": TURN / (100000 * 100), "elbow": -TURN / (8388608 * 80),
-       "wrist": TURN / (4000 * 50), "tool": TURN / (10000 * 50)}
 PLACES = [{"shoulder": -1.6, "elbow": -0.4, "wrist": 0.8, "tool": 0.5, "gripper": 0.6},
           {"shoulder": -0.9, "elbow": 0.5, "wrist": -0.4, "tool": -0.3, "gripper": -0.5}]
 
 
-def slowly():
-    """The robot's file with what a machine wants whose timers are late by several ms: periods and
-    time-outs that are long, a drive that minds SYNC by two periods, and a slower position loop."""
-    tree = rosparam.load_file(package_file(CONFIG))[0][0]["axes"]
-    return {"bus/sync_period": 0.02, "bus/heartbeat": 0.5, "axes/gripper/rpdo_timeout": 1.0,
-            "axes/tool/position_loop": {"gain": 5.0},
-            "axes/shoulder/write": tree["shoulder"]["write"] + [{"object": "sync_tolerance", "raw": 4}],
-            "groups/arm/constraints": {"goal_time": 3.0}}
-
-
-class DemoRobot(RobotTest):
+class DemoRobot(DemoRobotTest):
     """One life of a robot, in the order of the names: starting costs seconds here."""
-
-    AXES = sorted(JOINTS)
-
-    @classmethod
-    def setUpClass(cls):
-        cls.wire = Wire()
-        cls.robot = Robot()
-        cls.drives = Process("simulated_drives", "simulated_drives", CONFIG, interface="vcan0",
-                             **slowly())
-        cls.process = Process("bus_node", "robot", CONFIG, interface="vcan0", **slowly())
-
-    @classmethod
-    def tearDownClass(cls):
-        cls.process.stop()
-        cls.drives.stop()
-        cls.wire.close()
-
-    def inject(self, axis, fault):
-        from cia402_driver.srv import InjectFault
-        rospy.wait_for_service("/simulated_drives/inject_fault", 40.0)
-        answer = rospy.ServiceProxy("/simulated_drives/inject_fault", InjectFault)(axis, fault)
-        self.assertTrue(answer.success, answer.message)
-
-    def told(self, joint):
-        """Statusword and position, rad from where its drive counts, of the newest TPDO 1."""
-        data = [data for _, identifier, data in self.wire.since(0.0)
-                if identifier == 0x180 + NODES[joint]][-1]
-        if joint in RAD:
-            statusword, counts = struct.unpack_from("<Hi", data)
-            return statusword, counts * RAD[joint]
-        return struct.unpack_from("<Hf", data)
-
-    def powered(self, joint):
-        return self.told(joint)[0] & 0x6F == 0x27
 
     def travel_to(self, places):
         """A trajectory of all joints, until the motors have turned by what they had to. It is sent
@@ -132,20 +71,6 @@ class DemoRobot(RobotTest):
         self.robot.wait_diagnostic("elbow", OK)
         self.travel_to(PLACES[1])
 
-    def client(self):
-        client = actionlib.SimpleActionClient("/robot/arm/follow_joint_trajectory",
-                                              FollowJointTrajectoryAction)
-        self.assertTrue(client.wait_for_server(rospy.Duration(100.0)), "the action is offered")
-        return client
-
-    def goal(self, places, seconds):
-        goal = FollowJointTrajectoryGoal()
-        goal.trajectory.joint_names = JOINTS
-        goal.trajectory.points = [JointTrajectoryPoint(
-            positions=[places[joint] for joint in JOINTS], velocities=[0.0] * len(JOINTS),
-            time_from_start=rospy.Duration(seconds))]
-        return goal
-
     def test_5_an_action_is_followed_by_all_families(self):
         worst = {}
 
@@ -163,7 +88,7 @@ class DemoRobot(RobotTest):
         for _ in range(5):  # a late cycle of this machine ends it
             self.succeed("enable")
             worst.clear()
-            client.send_goal(self.goal(PLACES[0], 5.0))
+            client.send_goal(point_goal(PLACES[0], 5.0))
             self.assertTrue(client.wait_for_result(rospy.Duration(100.0)), "a result")
             if client.get_state() == GoalStatus.SUCCEEDED:
                 break
@@ -181,7 +106,7 @@ class DemoRobot(RobotTest):
         for _ in range(5):  # a late cycle of this machine ends it before
             self.succeed("enable")
             before = self.told("shoulder")[1]
-            client.send_goal(self.goal(PLACES[1], 5.0))
+            client.send_goal(point_goal(PLACES[1], 5.0))
             wait_until(lambda: abs(self.told("shoulder")[1] - before) > 0.1, "it moves")
             client.cancel_goal()
             self.assertTrue(client.wait_for_result(rospy.Duration(100.0)), "a result")
