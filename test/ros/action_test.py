@@ -5,12 +5,12 @@ import signal
 import statistics
 import time
 
-import actionlib
 import rospy
 from actionlib_msgs.msg import GoalID, GoalStatus, GoalStatusArray
 from control_msgs.msg import (FollowJointTrajectoryAction, FollowJointTrajectoryActionGoal,
                               FollowJointTrajectoryActionResult, FollowJointTrajectoryGoal,
                               FollowJointTrajectoryResult, JointTolerance)
+from goal_client import GoalClient
 from robot_client import DEADLINE, RobotTest, main, wait_until
 from trajectory_msgs.msg import JointTrajectoryPoint
 
@@ -34,7 +34,7 @@ def goal_of(positions, seconds, joints=None):
 
 class ActionTest(RobotTest):
     def make_client(self, action=ACTION):
-        client = actionlib.SimpleActionClient(action, FollowJointTrajectoryAction)
+        client = GoalClient(action, FollowJointTrajectoryAction)
         self.assertTrue(client.wait_for_server(rospy.Duration.from_sec(DEADLINE)))
         return client
 

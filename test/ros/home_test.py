@@ -3,12 +3,12 @@
 """Goals of the action ~home: what they tell, how they end, and where the axes are then."""
 import math
 
-import actionlib
 import rospy
 from actionlib_msgs.msg import GoalStatus
 from cia402_driver.msg import HomeAction, HomeGoal
 from control_msgs.msg import (FollowJointTrajectoryAction, FollowJointTrajectoryGoal,
                               FollowJointTrajectoryResult)
+from goal_client import GoalClient
 from robot_client import DEADLINE, RobotTest, main, wait_until
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
@@ -28,7 +28,7 @@ class HomeTest(RobotTest):
         self.client = self.make_client()
 
     def make_client(self, name="home", kind=HomeAction):
-        client = actionlib.SimpleActionClient(f"/robot/{name}", kind)
+        client = GoalClient(f"/robot/{name}", kind)
         self.assertTrue(client.wait_for_server(rospy.Duration.from_sec(DEADLINE)))
         return client
 

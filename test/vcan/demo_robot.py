@@ -6,11 +6,11 @@ import os
 import struct
 import sys
 
-import actionlib
 from control_msgs.msg import FollowJointTrajectoryAction, FollowJointTrajectoryGoal
 from trajectory_msgs.msg import JointTrajectoryPoint
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "ros"))
+from goal_client import GoalClient  # noqa: E402
 from robot_client import (ERROR, OK, Process, Robot, RobotTest, main, package_file,  # noqa: E402,F401
                           rosparam, rospy, wait_until)
 from wire import Wire  # noqa: E402
@@ -97,7 +97,6 @@ class DemoRobotTest(RobotTest):
         return self.told(joint)[0] & 0x6F == 0x27
 
     def client(self):
-        client = actionlib.SimpleActionClient("/robot/arm/follow_joint_trajectory",
-                                              FollowJointTrajectoryAction)
+        client = GoalClient("/robot/arm/follow_joint_trajectory", FollowJointTrajectoryAction)
         self.assertTrue(client.wait_for_server(RESULT), "the action is offered")
         return client

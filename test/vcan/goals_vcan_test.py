@@ -16,7 +16,7 @@ from tf_test import FRAMES, Teller, difference, turn_of
 
 LOW = {"shoulder": -1.6, "elbow": -1.2, "wrist": -0.8, "tool": -0.8, "gripper": -1.0}
 HIGH = {"shoulder": 0.6, "elbow": 1.2, "wrist": 0.9, "tool": 0.9, "gripper": 1.0}
-BEGIN_S, CRUISE_S = 0.4, 1.2  # from LOW to HIGH: a beginning, a way at one speed, an end like the beginning
+BEGIN_S, CRUISE_S = 0.4, 1.2  # of the way up: evenly faster, at one speed; to rest as it began
 SPEEDS = {joint: (HIGH[joint] - LOW[joint]) / (BEGIN_S + CRUISE_S) for joint in JOINTS}  # rad/s
 # rad off the path: at its speed a motor is 6 cycles behind it, the most that docs/stops.md allows.
 LOOSE = [JointTolerance(name=joint, position=0.3) for joint in JOINTS]
@@ -24,7 +24,8 @@ LOOSE = [JointTolerance(name=joint, position=0.3) for joint in JOINTS]
 # What drives measure: joint, name in its profile, object, row of the simulated drive's dictionary
 # (its name, type, access, PDO, raw value), and what that is by the maker's manual.
 MEASURED = [
-    ("shoulder", "dc_link_voltage", (0x200B, 0x1B), ("dc_bus_voltage", "uint16", "ro", "-", 3105), "310.5 V"),
+    ("shoulder", "dc_link_voltage", (0x200B, 0x1B),
+     ("dc_bus_voltage", "uint16", "ro", "-", 3105), "310.5 V"),
     ("shoulder", "module_temperature", (0x200B, 0x1C),
      ("module_temperature", "int16", "ro", "-", 48), "48 degC"),
     ("shoulder", "encoder_temperature", (0x200B, 0x43),
@@ -93,7 +94,7 @@ class Goals(DemoRobotTest):
         @return what was sent meanwhile, and what the motion returns."""
         for _ in range(5):
             self.succeed("enable")
-            if self.go(LOW, 2.6)[0] != GoalStatus.SUCCEEDED:
+            if self.go(LOW, 2.4)[0] != GoalStatus.SUCCEEDED:
                 continue
             began = time.monotonic()
             result = motion()
@@ -128,6 +129,7 @@ class Goals(DemoRobotTest):
                             f"{joint}: {answer.hex()} was told on the wire")
 
     def test_2_frames_are_those_of_robot_state_publisher(self):
+        self.robot.wait_ready(120.0)
         self.succeed("home", "home done on 5 of 5 axes")
         with open(package_file("config/robots/demo.urdf"), encoding="ascii") as urdf:
             rospy.set_param("robot_description", urdf.read())
@@ -203,7 +205,7 @@ class Goals(DemoRobotTest):
             second.send_goal(point_goal(there, 2.0))
             replaced, ended = self.end(first), self.end(second)
             arrived = time.monotonic()
-            time.sleep(1.0)  # that it stays there is seen by what follows
+            time.sleep(0.6)  # that it stays there is seen by what follows
             return taken_over, replaced, ended, arrived
         targets, (taken_over, replaced, ended, arrived) = self.play(motion)
         self.assert_ended(replaced, GoalStatus.PREEMPTED, "arm: replaced by a newer trajectory")
@@ -224,13 +226,13 @@ class Goals(DemoRobotTest):
             goal.path_tolerance = LOOSE[1:] + [JointTolerance(name="shoulder", position=0.02)]
             client.send_goal(goal)
             ended = self.end(client)
-            time.sleep(1.0)  # its joints come to rest meanwhile
+            time.sleep(0.7)  # its joints come to rest meanwhile
             rest = time.monotonic()
             time.sleep(0.4)
             return ended, rest
         targets, (ended, rest) = self.play(motion)
-        self.assert_ended(ended, GoalStatus.ABORTED, "arm: trajectory stopped: shoulder is |rad off its "
-                          "path at |, the tolerance is 0.02 rad",
+        self.assert_ended(ended, GoalStatus.ABORTED, "arm: trajectory stopped: shoulder is |rad off "
+                          "its path at |, the tolerance is 0.02 rad",
                           FollowJointTrajectoryResult.PATH_TOLERANCE_VIOLATED)
         targets.assert_rest(self, rest)
         for joint in JOINTS:
@@ -258,7 +260,7 @@ class Goals(DemoRobotTest):
             of_all, of_wrist = self.client(), self.client()
             of_all.send_goal(way_up())
             self.wait_half_way(of_all)
-            of_wrist.send_goal(point_goal(LOW, 3.0, ["wrist"]))
+            of_wrist.send_goal(point_goal(LOW, 2.6, ["wrist"]))
             others_rest = time.monotonic() + BEGIN_S + CRUISE_S  # more than is left of their way
             replaced = self.end(of_all)
             ended = self.end(of_wrist)

@@ -11,9 +11,9 @@ LIMITS = {joint: axis["limits"] for joint, axis in robot_file()["axes"].items()}
 BY_VELOCITY = "tool"
 SMALLEST = {joint: abs(rad) for joint, rad in RAD.items()}  # rad, and rad/s, that a target can tell
 SMALLEST["gripper"] = 2.0 ** -23  # of a float of 32 bits, below 2 rad
-# The velocity of the tool is that of its path, and the gain times what the motor is off the path. A motor
-# is 3 cycles behind what is computed (docs/stops.md): while that changes by dv in a cycle the motor is
-# slower, or faster, by 3 dv, and comes off its path by 3 dv times the period.
+# The velocity of the tool is that of its path, and the gain times what the motor is off the path. A
+# motor is 3 cycles behind what is computed (docs/stops.md): while that changes by dv in a cycle the
+# motor is slower, or faster, by 3 dv, and comes off its path by 3 dv times the period.
 LOOSER = 1.0 + POSITION_GAIN * 3.0 * PERIOD
 
 
@@ -72,6 +72,8 @@ class Targets:
             sent = self.sent(joint, since)
             test.assertGreater(len(sent), 10, joint)
             if joint == BY_VELOCITY:  # which still takes what its motor is off, counts
-                test.assertLess(max(abs(velocity) for velocity in sent), 0.01, joint)
+                most = max(abs(velocity) for velocity in sent)
+                print(f"{joint}: {most:.6f} rad/s at rest")
+                test.assertLess(most, 0.01, joint)
             else:
                 test.assertEqual(len(set(sent)), 1, f"{joint}: {sent}")
