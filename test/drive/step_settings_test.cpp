@@ -332,5 +332,21 @@ TEST(SettingsStep, RefusesABrakeThatTakesLonger) {
   EXPECT_THAT(status.message, HasSubstr("brake_time (2006:00) is 0.501 s, longer than the 0.5 s"));
 }
 
+// As an axis without PDOs may have it of its own first controlword.
+TEST(SettingsStep, AsksAgainForWhatMadeWayForAnUrgentWrite) {
+  Bench bench(testConfig(expecting(8)));
+  bench.drive.dictionary[{0x2002, 0}] = {8, 2};
+  bench.drive.unanswered_reads.insert({0x2002, 0});
+  ASSERT_TRUE(bench.boot());
+  ASSERT_TRUE(bench.axis.start({ProcedureKind::enable, {}, 0.0}, bench.now).ok());
+  ASSERT_TRUE(
+      bench.runUntil([&] { return bench.axis.procedure().step == "comparing settings"; }, 1s));
+  bench.cycle();
+  bench.drive.unanswered_reads.clear();
+  bench.device().objects().downloadUrgent({0x2099, 0}, {0, 0}, "stop");
+  ASSERT_TRUE(bench.runUntil([&] { return !bench.axis.procedure().running; }));
+  EXPECT_TRUE(bench.axis.procedure().success) << bench.axis.procedure().message;
+}
+
 }  // namespace
 }  // namespace cia402::drive

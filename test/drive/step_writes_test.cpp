@@ -200,5 +200,21 @@ TEST(WriteStep, CopiesNoFloatThatIsNoFiniteNumberOrNoFloatAtAll) {
   }
 }
 
+// As an axis without PDOs may have it of its own first controlword.
+TEST(WriteStep, WhatMadeWayForAnUrgentWriteIsWrittenOnceMore) {
+  Bench bench(optionBeforeEnable());
+  ASSERT_TRUE(bench.boot());
+  bench.drive.unanswered.insert({0x605A, 0});
+  ASSERT_TRUE(bench.axis.start({ProcedureKind::enable, {}, 0.0}, bench.now).ok());
+  ASSERT_TRUE(bench.runUntil(
+      [&] { return !bench.drive.writes.empty() && bench.drive.writes.back().first == 0x605A; }));
+  bench.drive.unanswered.clear();
+  bench.drive.writes.clear();
+  bench.device().objects().downloadUrgent({0x2099, 0}, {0, 0}, "stop");
+  ASSERT_TRUE(bench.runUntil([&] { return !bench.axis.procedure().running; }));
+  EXPECT_TRUE(bench.axis.procedure().success) << bench.axis.procedure().message;
+  EXPECT_EQ(bench.drive.writes, (std::vector<Write>{{0x2099, 0}, {0x605A, 2}}));
+}
+
 }  // namespace
 }  // namespace cia402::drive

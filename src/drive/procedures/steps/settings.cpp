@@ -103,6 +103,7 @@ bool SettingsStep::ask(const Context& context) {
 
 /// @return what went wrong; the brake's time alone has a number to fall back on
 std::string SettingsStep::take(const Context& context, const fieldbus::Transfer& answer) {
+  if (answer.failure() == fieldbus::Transfer::Failure::cancelled) return {};  // asked again
   if (answer.direction() == fieldbus::Transfer::Direction::download) {
     ++written_;
     if (!answer.ok()) return refusal(context) + answer.message();

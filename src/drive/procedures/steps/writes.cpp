@@ -36,6 +36,10 @@ Outcome WriteStep::advance(const Context& context) {
     }
     if (!ticket_->done()) return Outcome::running();
     const fieldbus::Ticket answer = std::exchange(ticket_, nullptr);
+    if (answer->failure() == fieldbus::Transfer::Failure::cancelled) {
+      written_.clear();  // once more: it made way for a stop that was under way already
+      continue;
+    }
     if (!answer->ok() && !current_.optional && !mayLeaveOut(context, *answer)) {
       return Outcome::failed(context.axis.who() + ": " + answer->message() +
                              (lacking(*answer) ? advice(context) : ""));
