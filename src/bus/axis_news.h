@@ -34,7 +34,7 @@ class AxisNews {
   void setCause(std::string cause) { cause_ = std::move(cause); }
   const std::string& cause() const { return cause_; }
 
-  /// Once a cycle, the last of it: tells what has changed.
+  /// Once a cycle, the last of it, and when the axis has given notice beside it: tells what is new.
   void watch(drive::Axis& axis, AxisReporter& reporter, const BusSide& bus, Time now) {
     if (dried_up_ != axis.stream().dried_up) tellStream(axis, now);
     if (differs(axis)) {
