@@ -39,11 +39,11 @@ Boot boot(const Row& row) {
   world.run(std::chrono::seconds(1));
   const sim::BusTraffic before = world.world().bus().traffic();
   const Time begin = world.now();
-  world.network().start(begin);
+  world.startDriver();
   const Time end = begin + std::chrono::seconds(60);
   while (!allReady(world.network()) && world.now() < end) world.run(std::chrono::microseconds(100));
   for (const canopen::Node& node : world.network().master().nodes()) {
-    const std::uint32_t boot_ups = node.bootUps() - 1;  // the first one told that it has power
+    const std::uint32_t boot_ups = node.bootUps();  // the driver was not there at the first one
     const bool well = node.health() == fieldbus::Health::ready && boot_ups == 1 &&
                       node.notes().empty() && node.emergencies() == 0;
     if (!well) {

@@ -8,45 +8,50 @@
 #include <utility>
 #include <vector>
 
-#include "bus/flight_recorder.h"
+#include "bus/bus_loop.h"
 #include "bus/jobs/procedure_command.h"
-#include "bus/network.h"
+#include "sim/bus/interface.h"
 #include "sim/world/robot_drives.h"
 #include "sim/world/world.h"
 
 namespace cia402::tools {
 
 /// A whole robot in virtual time and one thread: driver, bus and simulated drives. Hours of robot
-/// life in seconds, and with one seed always the same.
-///
-/// The network itself, not bus::BusLoop on an interface, as in a VirtualHost: a frame is taken in
-/// at its end, and the network is ticked when it says so. BusLoop ticks after each frame, too, so
-/// that an axis asks its next question with the answer, and its frames lie elsewhere.
-class VirtualRobot final : private sim::Participant, private bus::EventSink {
+/// life in seconds, and with one seed always the same. The driver is bus::BusLoop on a simulated
+/// interface, and goes round at once with each frame and at each deadline; where the computer that
+/// it runs on matters, a VirtualHost does it.
+class VirtualRobot final : private sim::Timed, private bus::EventSink {
  public:
   /// @param drives on the bus, not necessarily those that `robot` expects.
   /// @param seed of faults injected into the bus.
   VirtualRobot(const config::RobotConfig& robot, const canopen::MasterConfig& master,
                const std::vector<sim::SimulatedDrive>& drives, std::uint64_t seed = 1)
       : world_(robot.bus.bitrate, seed),
-        port_(world_.addParticipant("master", *this)),
-        recorder_(robot, port_),
-        network_(robot, master, recorder_, *this) {
-    recorder_.watch(network_);
+        interface_(world_.bus(), "master", unhelped()),
+        loop_(robot, master, interface_, static_cast<bus::EventSink&>(*this)) {
+    interface_.setAdvance([](Time) {});  // the world goes on by itself
+    world_.add(*this);
     sim::addTo(world_, drives);
   }
 
   /// Powers the drives on and starts the driver.
   void start() {
     world_.powerOn();
-    network_.start(world_.now());
+    startDriver();
   }
-  void run(Duration duration) { world_.advance(world_.now() + duration); }
+  /// Starts the driver on drives that may be there for long; it hears nothing of what was before.
+  void startDriver() {
+    while (interface_.receive(now())) {
+    }
+    started_ = true;
+    loop_.step(now());
+  }
+  void run(Duration duration) { world_.advance(now() + duration); }
   /// Runs in steps of a millisecond until `condition` holds. @return false after `limit`.
   bool runUntil(const std::function<bool()>& condition, Duration limit) {
-    const Time end = world_.now() + limit;
+    const Time end = now() + limit;
     while (!condition()) {
-      if (world_.now() >= end) return false;
+      if (now() >= end) return false;
       run(std::chrono::milliseconds(1));
     }
     return true;
@@ -57,7 +62,7 @@ class VirtualRobot final : private sim::Participant, private bus::EventSink {
                                                Duration limit = std::chrono::seconds(120)) {
     std::optional<typename Request::Answer> answer;
     const auto take = [&answer](const typename Request::Answer& given) { answer = given; };
-    network_.execute(bus::Command(std::move(request), take), world_.now());
+    network().execute(bus::Command(std::move(request), take), now());
     runUntil([&answer] { return answer.has_value(); }, limit);
     return answer;
   }
@@ -68,13 +73,13 @@ class VirtualRobot final : private sim::Participant, private bus::EventSink {
     return call(bus::ProcedureCommand{axis, request});
   }
 
-  bus::Network& network() { return network_; }
+  bus::Network& network() { return loop_.network(); }
   sim::World& world() { return world_; }
-  bus::FlightRecorder& recorder() { return recorder_; }
+  bus::FlightRecorder& recorder() { return loop_.recorder(); }
   /// The driver does not run for so long, as on a host that sleeps; frames are kept for it.
-  void freeze(Duration duration) { frozen_until_ = world_.now() + duration; }
+  void freeze(Duration duration) { frozen_until_ = now() + duration; }
   /// The driver's controller, to pull its cable or let it die.
-  sim::Port& port() { return port_; }
+  sim::Port& port() { return interface_.port(); }
   Time now() const { return world_.now(); }
   /// What was told so far, oldest first.
   const std::vector<bus::Event>& events() const { return events_; }
@@ -82,57 +87,33 @@ class VirtualRobot final : private sim::Participant, private bus::EventSink {
   const std::vector<bus::EmergencyEvent>& emergencies() const { return emergencies_; }
 
  private:
-  /// As bus::BusWatch does with a real interface.
-  void watchPort(Time now) {
-    const bool lost = port_.state() == can::BusState::bus_off;
-    if (lost == port_lost_) return;
-    port_lost_ = lost;
-    recorder_.onInterface(port_.state(), now);
-    if (lost) {
-      network_.busLost("the bus is off", now);
-    } else {
-      network_.busBack(true, now);
-    }
+  /// A controller that is bus-off stays so until port() is asked to recover.
+  static sim::BusInterface::Options unhelped() {
+    sim::BusInterface::Options options;
+    options.may_restart = false;
+    return options;
   }
-  void receive(const can::Frame& frame, Time now) override {
-    if (now < frozen_until_) {
-      kept_.emplace_back(frame, now);
-    } else {
-      take(frame, now, now);
-    }
+  void tick(Time now) override { loop_.step(now); }
+  Time nextDeadline() const override {
+    if (!started_) return kNever;
+    return std::max(interface_.waiting() > 0 ? now() : loop_.nextDeadline(), frozen_until_);
   }
-  /// In the order of bus::BusLoop.
-  void tick(Time now) override {
-    network_.produceSync(now);
-    for (const auto& [frame, stamp] : kept_) take(frame, stamp, now);
-    kept_.clear();
-    watchPort(now);
-    network_.tick(now);
-    recorder_.observe();
-  }
-  void take(const can::Frame& frame, Time stamp, Time now) {
-    recorder_.received(frame, stamp);
-    network_.receive(frame, stamp, now);
-  }
-  Time nextDeadline() const override { return std::max(network_.nextDeadline(), frozen_until_); }
   void onEvent(const bus::Event& event) override {
-    recorder_.onEvent(event);
+    loop_.recorder().onEvent(event);
     events_.push_back(event);
   }
   void onEmergency(const bus::EmergencyEvent& event) override {
-    recorder_.onEmergency(event);
+    loop_.recorder().onEmergency(event);
     emergencies_.push_back(event);
   }
 
   sim::World world_;
-  sim::Port& port_;
+  sim::BusInterface interface_;
   std::vector<bus::Event> events_;
   std::vector<bus::EmergencyEvent> emergencies_;
-  std::vector<std::pair<can::Frame, Time>> kept_;
+  bool started_ = false;
   Time frozen_until_{};
-  bus::FlightRecorder recorder_;
-  bool port_lost_ = false;
-  bus::Network network_;
+  bus::BusLoop loop_;
 };
 
 }  // namespace cia402::tools

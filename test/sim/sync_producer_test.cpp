@@ -99,5 +99,26 @@ TEST_F(SyncProducerTest, RunsInAWorld) {
               ElementsAre(can::Frame(0x80, {1}), can::Frame(0x80, {2}), can::Frame(0x80, {3})));
 }
 
+/// Is due at 2 ms and every 3 ms from then on.
+struct Bell final : Timed {
+  void tick(Time now) override {
+    rang.push_back(now);
+    due += milliseconds(3);
+  }
+  Time nextDeadline() const override { return due; }
+  Time due{milliseconds(2)};
+  std::vector<Time> rang;
+};
+
+TEST(WorldTime, TicksWhatHasNoPortOfItWhenThatIsDue) {
+  World world(1e6);
+  Bell bell;
+  world.add(bell);
+  EXPECT_EQ(world.nextEvent(), Time(milliseconds(2)));
+  world.advance(Time(milliseconds(8)));
+  EXPECT_THAT(bell.rang,
+              ElementsAre(Time(milliseconds(2)), Time(milliseconds(5)), Time(milliseconds(8))));
+}
+
 }  // namespace
 }  // namespace cia402::sim

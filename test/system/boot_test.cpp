@@ -96,7 +96,7 @@ TEST_F(LeftTurning, IsStoppedBeforeAnythingElseIsWrittenAndBooted) {
     if (frame.id == 0x601 && frame.data[0] == 0x40 && writes.empty()) ++reads;
     if (frame.id == 0x601 && frame.data[0] >> 5U == 1) writes.push_back(frame);
   });
-  scene.robot().network().start(scene.now());
+  scene.robot().startDriver();
   ASSERT_TRUE(scene.runUntil([&] { return !writes.empty(); }, 2s));
   EXPECT_EQ(writes[0], can::Frame(0x601, {0x2B, 0x40, 0x60, 0x00, 0x02, 0x00, 0, 0}));
   EXPECT_EQ(reads, 1u) << "whether it turns, and nothing else";
@@ -111,7 +111,7 @@ TEST_F(LeftTurning, IsStoppedBeforeAnythingElseIsWrittenAndBooted) {
 // NMT stop would leave it turning, out of reach of every SDO.
 TEST_F(LeftTurning, IsNotStoppedByNmtWhileItBoots) {
   leaveTurning();
-  scene.robot().network().start(scene.now());
+  scene.robot().startDriver();
   ASSERT_TRUE(scene.runUntil([&] { return scene.state("left").health == Health::booting; }, 2s));
   ASSERT_GT(scene.truth("left").velocity_turns, 1.0);
   for (const char* command : {"stop", "pre_operational"}) {
@@ -337,7 +337,7 @@ TEST(Unsupervised, ALostStartIsNoticedByTheMissingTpdos) {
   scene.world().powerOn();
   scene.run(1s);
   scene.world().bus().faults().add(rule);
-  scene.robot().network().start(scene.now());
+  scene.robot().startDriver();
   ASSERT_TRUE(scene.runUntil([&] { return allReady(scene.robot()); }, 8s)) << scene.told();
   EXPECT_EQ(scene.truth("left").nmt, canopen::NmtState::operational);
 }

@@ -82,7 +82,7 @@ TEST(Id286Start, ByItselfIsFoundByItsHeartbeatAndConfigured) {
   scene.world().powerOn();
   scene.run(3s);
   ASSERT_EQ(scene.truth("joint").nmt, NmtState::operational);
-  scene.robot().network().start(scene.now());
+  scene.robot().startDriver();
   ASSERT_TRUE(scene.runUntil([&] { return allReady(scene.robot()); }, kFamilyBoot)) << scene.told();
   EXPECT_THAT(scene.writes(), Contains("2B 17 10 00 64 00 00 00"));
   EXPECT_THAT(scene.lines, Contains("000 01 01"));

@@ -223,6 +223,7 @@ TEST(Id286Terminals, HaveTheNamesThatTheRobotsFileGivesThem) {
   const bus::ObjectAnswer read = scene.call(bus::ReadObjectCommand{"joint", "digital_inputs"});
   EXPECT_TRUE(read.success) << read.message;
   EXPECT_THAT(read.message, AllOf(HasSubstr("door"), HasSubstr("part")));
+  ASSERT_TRUE(scene.runUntil([&] { return scene.state("joint").digital_inputs_valid; }, 100ms));
   EXPECT_EQ(scene.state("joint").digital_inputs, 1U);
   const auto unknown = scene.call(bus::SetOutputsCommand{"joint", {"horn"}, {true}});
   EXPECT_FALSE(unknown.success);

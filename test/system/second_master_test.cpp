@@ -67,7 +67,7 @@ TEST_F(SecondMaster, IsNoneOfTheDrivesThatADriverLeftBehind) {
   send(can::Frame(0x000, {0x01, 0x00}));
   scene->run(200ms);
   const unsigned before = others;
-  scene->robot().network().start(scene->now());
+  scene->robot().startDriver();
   scene->run(140ms);
   EXPECT_EQ(others, before);
   ASSERT_TRUE(scene->runUntil([&] { return allReady(scene->robot()); }, 3s)) << scene->told();

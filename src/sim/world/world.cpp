@@ -75,7 +75,6 @@ class World::ParticipantNode final : public Listener {
 
   void onFrame(const can::Frame& frame, Time now) override { participant_.receive(frame, now); }
   Port& port() { return port_; }
-  Participant& participant() { return participant_; }
 
  private:
   Port& port_;
@@ -95,6 +94,7 @@ Drive& World::addDrive(const std::string& name, std::shared_ptr<const DriveDefin
 
 Port& World::addParticipant(const std::string& name, Participant& participant) {
   participants_.push_back(std::make_unique<ParticipantNode>(bus_, name, participant));
+  add(participant);
   return participants_.back()->port();
 }
 
@@ -109,9 +109,7 @@ void World::powerOn() {
 Time World::nextEvent() const {
   Time next = bus_.nextEvent();
   for (const auto& node : drives_) next = std::min(next, node->nextEvent());
-  for (const auto& node : participants_) {
-    next = std::min(next, node->participant().nextDeadline());
-  }
+  for (const Timed* timed : timed_) next = std::min(next, timed->nextDeadline());
   return next;
 }
 
@@ -125,8 +123,8 @@ void World::advance(Time until) {
     for (auto& node : drives_) {
       if (node->nextEvent() <= now_) node->tick(now_);
     }
-    for (auto& node : participants_) {
-      if (node->participant().nextDeadline() <= now_) node->participant().tick(now_);
+    for (Timed* timed : timed_) {
+      if (timed->nextDeadline() <= now_) timed->tick(now_);
     }
   }
   now_ = std::max(now_, until);

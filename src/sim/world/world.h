@@ -11,16 +11,21 @@
 
 namespace cia402::sim {
 
-/// Something that lives on the simulated bus and in its time: a master under test.
-class Participant {
+/// Something that lives in the time of a simulated bus, e.g. the computer of a master under test.
+class Timed {
  public:
-  virtual ~Participant() = default;
-  /// A frame of another one has ended on the bus.
-  virtual void receive(const can::Frame& frame, Time now) = 0;
+  virtual ~Timed() = default;
   /// Does what is due until `now`.
   virtual void tick(Time now) = 0;
-  /// When tick() is due; kNever if it waits for frames only.
+  /// When tick() is due; kNever: not by itself.
   virtual Time nextDeadline() const = 0;
+};
+
+/// The same with a port on the bus that it shares with nobody.
+class Participant : public Timed {
+ public:
+  /// A frame of another one has ended on the bus.
+  virtual void receive(const can::Frame& frame, Time now) = 0;
 };
 
 /// A bus with its drives and any number of participants in one thread and one time, virtual or
@@ -41,6 +46,9 @@ class World {
                   const std::vector<AxisMechanics>& further = {});
   /// Adds a participant that outlives the world. @return its port, to send on.
   Port& addParticipant(const std::string& name, Participant& participant);
+  /// Adds what sees to its ports itself; must outlive the last advance(). Those that are due at one
+  /// time are ticked in the order in which they were added, after the bus and the drives.
+  void add(Timed& timed) { timed_.push_back(&timed); }
 
   /// Powers all drives on at the present time.
   void powerOn();
@@ -68,6 +76,7 @@ class World {
   Time now_{};
   std::vector<std::unique_ptr<DriveNode>> drives_;
   std::vector<std::unique_ptr<ParticipantNode>> participants_;
+  std::vector<Timed*> timed_;  ///< the participants, too
 };
 
 }  // namespace cia402::sim
