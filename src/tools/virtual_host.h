@@ -17,7 +17,7 @@ namespace cia402::tools {
 /// simulated world, woken by frames, commands and deadlines as bus::BusRunner is. It can be held
 /// up, wake late, die without a word and start again on drives that are still powered. Frames wait
 /// in its kernel meanwhile.
-class VirtualHost final : private bus::EventSink {
+class VirtualHost final : private sim::Timed, private bus::EventSink {
  public:
   /// How late the driver's thread wakes up, asked before each round.
   using Lateness = std::function<Duration()>;
@@ -30,6 +30,7 @@ class VirtualHost final : private bus::EventSink {
         master_(std::move(master)),
         interface_(world.bus(), "can0") {
     interface_.setAdvance([](Time) {});  // the world goes on by itself
+    world_.add(*this);
     interface_.port().setFirstInFirstOut(true);
   }
 
@@ -70,20 +71,7 @@ class VirtualHost final : private bus::EventSink {
     wake(now());
   }
   /// Lets everything happen up to and including `until`.
-  void advance(Time until) {
-    for (;;) {
-      const Time due = wakeTime();
-      const Time next = std::min(world_.nextEvent(), due);
-      if (next > until) break;
-      world_.advance(std::max(next, now()));
-      if (loop_ && due <= now()) {
-        round();
-      } else if (interface_.waiting() > 0) {
-        wake(now());
-      }
-    }
-    world_.advance(until);
-  }
+  void advance(Time until) { world_.advance(until); }
 
   Time now() const { return world_.now(); }
   sim::BusInterface& interface() { return interface_; }
@@ -95,6 +83,16 @@ class VirtualHost final : private bus::EventSink {
  private:
   static constexpr Duration kIdle = std::chrono::milliseconds(20);  // as bus::BusRunner
 
+  void tick(Time now) override {
+    if (wakeTime() <= now) {
+      round();
+    } else {
+      wake(now);
+    }
+  }
+  Time nextDeadline() const override { return frameCame() ? now() : wakeTime(); }
+  /// A frame has come for a thread that sleeps.
+  bool frameCame() const { return loop_ && woken_ == kNever && interface_.waiting() > 0; }
   void wake(Time time) {
     if (woken_ == kNever) woken_ = time;
   }
