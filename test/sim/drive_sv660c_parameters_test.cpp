@@ -264,5 +264,112 @@ TEST_F(Sv660cParameter, CountsInRpmAndMillisecondsWhereItsUnitsAreTheUsers) {
   EXPECT_LT(bench.drive->truth(bench.now).velocity_turns, 0.006);
 }
 
+// --- which way round [L3400-3418, L15582-15598] -----------------------------------------------
+
+struct Sv660cDirection : Sv660cBench {
+  double turns() { return bench.drive->truth(bench.now).position_turns; }
+  double speed() { return bench.drive->truth(bench.now).velocity_turns; }
+  void goTo(std::uint32_t counts) {
+    bench.write(0x607A, 0, counts, 4);
+    control(0x0F);
+    control(0x3F);
+    bench.run(ms(3000));
+  }
+};
+
+// Bit 7: pp and ip.
+TEST_F(Sv660cDirection, IsTurnedByBit7OfThePolarityForPositionsAlone) {
+  bench.write(0x607E, 0, 0x80, 1);
+  mode(1);
+  enable();
+  goTo(838861);
+  EXPECT_NEAR(turns(), -0.1, 1e-6);
+  EXPECT_EQ(bench.position(), -838861) << "only the command is said to change its sign";
+  mode(3);
+  bench.write(0x60FF, 0, 8388608, 4);
+  bench.run(ms(300));
+  EXPECT_NEAR(speed(), 1.0, 1e-3);
+  bench.write(0x60FF, 0, 0, 4);
+  bench.run(ms(300));
+  mode(1);
+  bench.write(0x607E, 0, 0, 1);  // any time
+  goTo(838861);
+  EXPECT_NEAR(turns(), 0.1, 1e-6);
+}
+
+// Bit 6: pv. Bit 5: pt, an addition of the maker's.
+TEST_F(Sv660cDirection, IsTurnedByBit6ForVelocitiesAndByBit5ForTorques) {
+  bench.write(0x607E, 0, 0x40, 1);
+  mode(3);
+  enable();
+  bench.write(0x60FF, 0, 8388608, 4);
+  bench.run(ms(300));
+  EXPECT_NEAR(speed(), -1.0, 1e-3);
+  EXPECT_NE(bench.read(0x6041) & 0x0400, 0U) << "the target, as it is meant, is reached";
+  bench.write(0x60FF, 0, 0, 4);
+  bench.run(ms(300));
+  bench.write(0x607F, 0, 8388608, 4);  // bounds the speed in pt
+  for (const auto& [bits, sign] : {std::pair(0x40U, 1.0), std::pair(0x20U, -1.0)}) {
+    bench.write(0x607E, 0, bits, 1);
+    mode(4);
+    bench.write(0x6071, 0, 500, 2);
+    bench.run(ms(300));
+    EXPECT_NEAR(speed(), sign, 1e-2) << bits;
+    EXPECT_NEAR(static_cast<std::int32_t>(bench.read(0x606C)), sign * 8388608, 1e5) << bits;
+  }
+}
+
+// H02.02 = 1: forward is clockwise, from the next power-on on.
+TEST_F(Sv660cDirection, IsAnotherOnceH0202WasSetAndThePowerWasOff) {
+  mode(1);
+  enable();
+  goTo(838861);
+  EXPECT_NEAR(turns(), 0.1, 1e-6);
+  EXPECT_EQ(bench.refusal(0x2002, 3, 1, 2), kDeviceState) << "while stopped only";
+  control(0x00);
+  bench.run(ms(100));
+  bench.write(0x2002, 3, 1, 2);
+  enable();
+  goTo(1677722);
+  EXPECT_NEAR(turns(), 0.2, 1e-6) << "not yet";
+  bench.drive->powerOff(bench.now);
+  bench.drive->powerOn(bench.now);
+  bench.run(ms(700));
+  mode(1);
+  enable();
+  EXPECT_EQ(bench.position(), 0) << "incremental from the factory [L3384]";
+  goTo(838861);
+  EXPECT_NEAR(turns(), 0.1, 1e-6) << "back by a tenth";
+  EXPECT_EQ(bench.position(), 838861);
+}
+
+// The switches stay where they are, and at their terminals: forward now leads away from P-OT.
+TEST_F(Sv660cDirection, LeavesSwitchesAndIndexPulsesWhereTheyAre) {
+  AxisMechanics mechanics;
+  mechanics.positive_limit_switch = 0.5;
+  mechanics.index_offset = 0.3;
+  DriveBench turned("sv660c", mechanics);
+  turned.run(ms(700));
+  turned.write(0x2002, 3, 1, 2);
+  turned.drive->powerOff(turned.now);
+  turned.drive->powerOn(turned.now);
+  turned.run(ms(700));
+  turned.write(0x6098, 0, 34, 1);  // forward at low speed to the first Z [L1729-1743]
+  turned.write(0x6060, 0, 6, 1);
+  for (const int word : {0x06, 0x07, 0x0F}) turned.control(static_cast<std::uint16_t>(word));
+  turned.run(ms(300));
+  turned.control(0x1F);
+  turned.run(ms(9000));  // 0.7 turns at 10 rpm
+  EXPECT_NEAR(turned.drive->truth(turned.now).position_turns, -0.7, 1e-6)
+      << "a whole turn from 0.3";
+  turned.write(0x6060, 0, 1, 1);
+  turned.write(0x607A, 0, static_cast<std::uint32_t>(-2 * 8388608), 4);
+  turned.control(0x0F);
+  turned.control(0x3F);
+  turned.run(ms(3000));
+  EXPECT_NE(turned.read(0x60FD) & 0x02, 0U)
+      << "forward overtravel is its switch, whatever is forward";
+}
+
 }  // namespace
 }  // namespace cia402::sim

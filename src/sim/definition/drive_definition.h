@@ -185,6 +185,12 @@ struct UnitScale {
   double factor = 1.0;  ///< device units per internal unit
 };
 
+/// Numbers that an object of floats does not take.
+struct FloatTraps {
+  bool non_finite = false;  ///< NaN and infinity: fault "not_a_number"
+  bool negative_zero = false;
+};
+
 /// What makes the corners of profiles round.
 struct SCurveDefinition {
   std::int64_t number = 3;  ///< of 6086h
@@ -209,7 +215,9 @@ struct DriveDefinition {
   std::map<Role, UnitScale> units_of;  ///< of single objects, instead of their quantity's
   Encoding encoding = Encoding::integer;
   std::map<fieldbus::ObjectId, Encoding> encodings;
-  std::map<Role, fieldbus::ObjectId> objects;              ///< instead of the standard's
+  std::map<Role, fieldbus::ObjectId> objects;  ///< instead of the standard's
+  /// Bits of 607Eh that turn the sign of targets of that quantity.
+  std::array<std::int64_t, kQuantityCount> polarity{};
   std::vector<MotorParameters> motors{MotorParameters()};  ///< one for each axis
   std::vector<ModeDefinition> modes;
 
@@ -255,8 +263,7 @@ struct DriveDefinition {
   double position_step = 0.0;
   ConnectionLoss master_lost = ConnectionLoss::fault;  ///< where 6007h does not exist
   bool stops_outside_operational = true;
-  bool traps_non_finite = false;  ///< NaN and infinity in a float object: fault "not_a_number"
-  bool traps_negative_zero = false;
+  FloatTraps float_traps;
   MakersOwnDefinition own;
   MemoryDefinition memory;
 

@@ -77,6 +77,7 @@ void readDefinition(DefinitionReader& reader, bool extends, DriveDefinition& out
   reader.section("units_of", [&](DefinitionReader& r) { readUnitsOf(r, out); });
   readEncoding(reader, out);
   readObjects(reader, out);
+  reader.section("polarity", [&](DefinitionReader& r) { readPolarity(r, out); });
   readMotors(reader, out);
   readAxes(reader, out);
   reader.read<bool>("encoder", out.absolute_encoder, {{"absolute", true}, {"incremental", false}});
@@ -107,8 +108,8 @@ void readDefinition(DefinitionReader& reader, bool extends, DriveDefinition& out
                           {"never", ProbeForgets::never}});
   });
   reader.section("float_traps", [&](DefinitionReader& r) {
-    r.read("non_finite", out.traps_non_finite);
-    r.read("negative_zero", out.traps_negative_zero);
+    r.read("non_finite", out.float_traps.non_finite);
+    r.read("negative_zero", out.float_traps.negative_zero);
   });
   reader.each("faults", [&](const std::string& name, const yaml::Value& value) {
     readFault(name, value, out);

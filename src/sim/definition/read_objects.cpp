@@ -45,6 +45,15 @@ void readUnits(DefinitionReader& reader, DriveDefinition& out) {
   for (std::size_t i = 1; i < kQuantityCount; ++i) readUnit(reader, kQuantities[i], out.units[i]);
 }
 
+void readPolarity(DefinitionReader& reader, DriveDefinition& out) {
+  for (std::size_t i = 1; i < kQuantityCount; ++i) {
+    if (!reader.has(kQuantities[i])) continue;
+    std::int64_t bit = 0;
+    reader.read(kQuantities[i], bit, 0, 31);
+    out.polarity[i] = std::int64_t{1} << bit;
+  }
+}
+
 void readUnitsOf(DefinitionReader& reader, DriveDefinition& out) {
   for (std::size_t i = 0; i < kRoleCount; ++i) {
     const RoleInfo& info = roleInfo(static_cast<Role>(i));

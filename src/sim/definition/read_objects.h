@@ -13,6 +13,8 @@ void readDictionary(DefinitionReader& reader, bool extends, DriveDefinition& out
 void readUnits(DefinitionReader& reader, DriveDefinition& out);
 /// The `units_of:` section, of single objects.
 void readUnitsOf(DefinitionReader& reader, DriveDefinition& out);
+/// The `polarity:` section.
+void readPolarity(DefinitionReader& reader, DriveDefinition& out);
 /// `encoding:`, of all objects with a unit.
 void readEncoding(DefinitionReader& reader, DriveDefinition& out);
 /// `objects:` and `encodings:`, of single objects.

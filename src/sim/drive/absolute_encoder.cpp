@@ -71,7 +71,7 @@ EncoderKind AbsoluteEncoder::kind() const {
   return index < encoder_.kinds.size() ? encoder_.kinds[index] : EncoderKind::absolute;
 }
 
-double AbsoluteEncoder::turned() const { return core_.motion().motor().position() - zero_; }
+double AbsoluteEncoder::turned() const { return core_.motion().motor().truePosition() - zero_; }
 
 double AbsoluteEncoder::rotary() const {
   const auto counts = static_cast<double>(encoder_.counts);
@@ -90,7 +90,7 @@ bool AbsoluteEncoder::batteryLow() const {
 void AbsoluteEncoder::forgetTurns() {
   const double whole = std::floor(turned());
   zero_ += whole;
-  core_.motion().setCounter(turned());
+  core_.motion().setCounter(core_.motion().motor().mirrored() ? -turned() : turned());
   core_.motion().setHomed(false);
   homed_ = told_ = false;
   core_.onObstacle();  // shows it
@@ -101,7 +101,7 @@ void AbsoluteEncoder::start(bool cold) {
   if (encoder_.counts == 0 || !cold) return;
   const EncoderKind known = kind();
   if (known == EncoderKind::incremental) {
-    zero_ = core_.motion().motor().position();
+    zero_ = core_.motion().motor().truePosition();
     return forgetTurns();
   }
   if (battery_low_ || known == EncoderKind::single_turn) {

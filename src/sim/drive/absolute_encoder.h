@@ -37,7 +37,7 @@ class AbsoluteEncoder {
   double number(const Object& object, double fallback) const;
   double wide(const AbsoluteEncoderDefinition::Wide& objects) const;
   EncoderKind kind() const;
-  double turned() const;  ///< turns since its own zero
+  double turned() const;  ///< turns since its own zero, forward as from the factory
   double rotary() const;  ///< counts within a turn of the load
   void forgetTurns();
   bool batteryLow() const;

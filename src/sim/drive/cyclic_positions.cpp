@@ -25,7 +25,7 @@ void CyclicPositions::target(double seconds, double into) {
   axis_.limits.release();
   const bool csp = axis_.mode->behaviour == ModeBehaviour::cyclic_position;
   const double offset = csp ? axis_.offset(Role::position_offset) : 0.0;
-  double target = axis_.trueTarget(axis_.values.get(targetRole(), 0.0) + offset);
+  double target = axis_.trueTarget(axis_.commanded(targetRole()) + offset);
   // From the one before, or from where the drive is, which may have stopped at a switch.
   const double at = axis_.demand.interpolator.position();
   const double step = std::min(std::fabs(target - last_.value_or(at)), std::fabs(target - at));

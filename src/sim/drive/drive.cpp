@@ -116,8 +116,8 @@ struct Drive::Impl : Device::Application, DriveCore::Reports {
   }
 
   bool badFloat(double value) const {
-    if (!std::isfinite(value)) return definition->traps_non_finite;
-    return value == 0.0 && std::signbit(value) && definition->traps_negative_zero;
+    if (!std::isfinite(value)) return definition->float_traps.non_finite;
+    return value == 0.0 && std::signbit(value) && definition->float_traps.negative_zero;
   }
 
   /// Calls a method of every axis.
@@ -144,7 +144,7 @@ struct Drive::Impl : Device::Application, DriveCore::Reports {
   void onPowerOn(Time time) override {
     now = time;
     heard = false;
-    for (DriveAxis& axis : axes) axis.terminals.start(axis.core);
+    for (DriveAxis& axis : axes) axis.start();
     forEach(&DriveCore::start, cold, time);
     gate.foreign = own_bus.foreign() || (cold ? store.silent() : gate.foreign);
     for (DriveAxis& axis : axes) axis.encoder.start(cold);
@@ -373,8 +373,8 @@ DriveTruth Drive::truth(Time now, unsigned axis) {
   DriveAxis& asked = impl_->axes.at(axis);
   const DriveMotion& motion = asked.core.motion();
   DriveTruth truth;
-  truth.position_turns = motion.motor().position();
-  truth.velocity_turns = motion.motor().velocity();
+  truth.position_turns = motion.motor().truePosition();
+  truth.velocity_turns = motion.motor().trueVelocity();
   truth.power_stage_on = motion.powered();
   truth.moving = std::fabs(truth.velocity_turns) > 1e-3;
   truth.statusword = asked.core.statusword();

@@ -12,8 +12,8 @@
 
 namespace cia402::sim {
 
-/// The mechanical side of one simulated axis, in motor turns seen from the drive (independent of
-/// the drive's units).
+/// The mechanical side of one simulated axis, in motor turns seen from a drive that calls forward
+/// what it does from the factory (independent of the drive's units).
 struct AxisMechanics {
   double initial_position = 0.0;         ///< turns, where the rotor stands at power-on
   double inertia_time_constant = 0.004;  ///< s, lag of the position loop (following error)

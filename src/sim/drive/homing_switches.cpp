@@ -33,8 +33,8 @@ unsigned AxisSwitches::levels(double turns) const {
 
 bool AxisSwitches::home(double turns) const {
   const bool pressed = mechanics_->home_switch_low < mechanics_->home_switch_high &&
-                       turns >= mechanics_->home_switch_low &&
-                       turns <= mechanics_->home_switch_high;
+                       place(turns) >= mechanics_->home_switch_low &&
+                       place(turns) <= mechanics_->home_switch_high;
   return seen(HomingInput::home_switch, pressed);
 }
 
@@ -55,11 +55,11 @@ bool AxisSwitches::active(HomingInput input, double turns) const {
 double AxisSwitches::edge(HomingInput input, bool low) const {
   switch (input) {
     case HomingInput::negative_limit:
-      return mechanics_->negative_limit_switch;
+      return place(mechanics_->negative_limit_switch);
     case HomingInput::positive_limit:
-      return mechanics_->positive_limit_switch;
+      return place(mechanics_->positive_limit_switch);
     case HomingInput::home_switch:
-      return low ? mechanics_->home_switch_low : mechanics_->home_switch_high;
+      return place(low != mirrored_ ? mechanics_->home_switch_low : mechanics_->home_switch_high);
     case HomingInput::none:
       break;
   }
@@ -68,13 +68,13 @@ double AxisSwitches::edge(HomingInput input, bool low) const {
 
 bool AxisSwitches::atIndex(double turns) const {
   constexpr double kWidth = 1e-6;  // turns
-  const double places = turns - mechanics_->index_offset;
+  const double places = place(turns) - mechanics_->index_offset;
   return std::fabs(places - std::round(places)) < kWidth;
 }
 
 std::optional<double> AxisSwitches::indexBetween(double from, double to) const {
   if (from == to) return std::nullopt;
-  const double offset = mechanics_->index_offset;
+  const double offset = place(mechanics_->index_offset);  // pulses are a whole turn apart
   const double first = to > from ? std::floor(from - offset) + 1.0 : std::ceil(from - offset) - 1.0;
   const double index = first + offset;
   const bool passed = to > from ? index <= to : index >= to;

@@ -34,11 +34,14 @@ class AxisSwitches {
   /// negative limit, positive limit and home switch.
   unsigned levels(double turns) const;
 
+  /// From now on positions count the other way round; the switches stay where they are.
+  void mirror(bool mirrored) { mirrored_ = mirrored; }
+
   bool negativeLimit(double turns) const {
-    return seen(HomingInput::negative_limit, turns <= mechanics_->negative_limit_switch);
+    return seen(HomingInput::negative_limit, place(turns) <= mechanics_->negative_limit_switch);
   }
   bool positiveLimit(double turns) const {
-    return seen(HomingInput::positive_limit, turns >= mechanics_->positive_limit_switch);
+    return seen(HomingInput::positive_limit, place(turns) >= mechanics_->positive_limit_switch);
   }
   /// Whether the home switch is active there.
   bool home(double turns) const;
@@ -52,12 +55,14 @@ class AxisSwitches {
   std::optional<double> indexBetween(double from, double to) const;
 
  private:
+  double place(double turns) const { return mirrored_ ? -turns : turns; }
   bool seen(HomingInput input, bool active) const;
   unsigned functions(double turns) const;
 
   const AxisMechanics* mechanics_;
   std::vector<Terminal> terminals_;
   bool all_ = true;  ///< every switch is connected
+  bool mirrored_ = false;
   std::optional<unsigned> first_bit_;
 };
 

@@ -38,8 +38,16 @@ void Motor::setPositionTimeConstant(double seconds) {
 }
 
 void Motor::setStops(double low, double high) {
-  lowest_ = low;
-  highest_ = high;
+  lowest_ = mirrored_ ? -high : low;
+  highest_ = mirrored_ ? -low : high;
+}
+
+void Motor::mirror(bool mirrored) {
+  if (mirrored == mirrored_) return;
+  mirrored_ = mirrored;
+  position_ = -position_;
+  velocity_ = -velocity_;
+  last_demand_.reset();
 }
 
 /// One step at the present speed, as far as the stops let it.

@@ -40,7 +40,11 @@ class Motor {
   void block(bool blocked) { blocked_ = blocked; }
   /// Its phases are swapped: it pushes against what its loops ask for, and runs away from a demand.
   void reverse(bool reversed) { reversed_ = reversed; }
-  /// Hard stops: it turns neither further back than `low` nor further on than `high`, turns.
+  /// The drive calls the other direction forward: what it has counted changes its sign.
+  void mirror(bool mirrored);
+  bool mirrored() const { return mirrored_; }
+  /// Hard stops: it turns neither further back than `low` nor further on than `high`, turns of a
+  /// motor that is not mirrored.
   void setStops(double low, double high);
   /// The position loop's lag, where the world changes it while running; s, > 0.
   void setPositionTimeConstant(double seconds);
@@ -56,7 +60,9 @@ class Motor {
   void applyTorque(double rated_torques, double max_speed);  ///< one step; speed limit in turns/s
   void coast();                                              ///< one step without power
 
-  double position() const { return position_; }  ///< turns
+  double position() const { return position_; }                               ///< turns
+  double truePosition() const { return mirrored_ ? -position_ : position_; }  ///< as not mirrored
+  double trueVelocity() const { return mirrored_ ? -velocity_ : velocity_; }
   double velocity() const { return velocity_; }  ///< turns/s
   double torque() const { return torque_; }      ///< in rated torques
   bool atRest() const { return velocity_ == 0.0; }
@@ -76,7 +82,7 @@ class Motor {
   double velocity_ = 0.0;
   double torque_ = 0.0;
   std::optional<double> last_demand_;  ///< of the position loop, to know how fast it moves
-  bool blocked_ = false, reversed_ = false;
+  bool blocked_ = false, reversed_ = false, mirrored_ = false;
 };
 
 }  // namespace cia402::sim

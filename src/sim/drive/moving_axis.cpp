@@ -25,6 +25,13 @@ MovingAxis::MovingAxis(const DriveDefinition& drive_definition,
       limits(definition, values, switches,
              motor_parameters.max_torque * motor_parameters.rated_acceleration) {}
 
+double MovingAxis::commanded(Role target) const {
+  const double value = values.get(target, 0.0);
+  const auto quantity = static_cast<std::size_t>(roleInfo(target).quantity);
+  const bool turned = (values.raw(Role::polarity, 0) & definition.polarity[quantity]) != 0;
+  return turned ? -value : value;
+}
+
 double MovingAxis::trueTarget(double turns) {
   const double target = limits.clamped(turns) + frame;
   const double range = values.range(Role::target_position);

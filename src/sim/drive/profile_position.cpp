@@ -69,7 +69,7 @@ double ProfilePosition::base() const {
 void ProfilePosition::accept(std::uint16_t controlword) {
   const bool immediately = (controlword & kImmediately) != 0;
   const bool relative = (controlword & kRelative) != 0;
-  const double turns = axis_.values.get(Role::target_position, 0.0);
+  const double turns = axis_.commanded(Role::target_position);
   const double commanded = relative ? base() - axis_.frame + turns : turns;
   const SetPoint next{axis_.trueTarget(commanded), axis_.limits.profile(axis_.mode), commanded};
   acknowledged_ = true;
@@ -107,7 +107,7 @@ void ProfilePosition::beginNext() {
 void ProfilePosition::step() {
   TrapezoidProfile& profile = axis_.demand.profile;
   if (!axis_.mode->handshake) {
-    active_ = {axis_.trueTarget(axis_.values.get(Role::target_position, 0.0)),
+    active_ = {axis_.trueTarget(axis_.commanded(Role::target_position)),
                axis_.limits.profile(axis_.mode),
                {}};
   }

@@ -28,8 +28,7 @@ void stepVelocity(MovingAxis& axis, bool ramped) {
   double limit = axis.limits.maxSpeed();
   if (ramped) limit = std::min(limit, axis.values.get(Role::max_profile_velocity, kUnlimited));
   const double offset = ramped ? 0.0 : axis.offset(Role::velocity_offset);
-  const double wanted =
-      std::clamp(axis.values.get(Role::target_velocity, 0.0) + offset, -limit, limit);
+  const double wanted = std::clamp(axis.commanded(Role::target_velocity) + offset, -limit, limit);
   const ProfileLimits limits = axis.limits.profile(axis.mode);
   const double braking = axis.limits.deceleration(Ramp::quick_stop, axis.mode);
   const double target = allowedVelocity(axis, wanted, braking);
@@ -72,7 +71,7 @@ void stepVelocityMode(MovingAxis& axis, const VelocityModeBits& bits) {
 void stepTorque(MovingAxis& axis, bool ramped) {
   Demand& demand = axis.demand;
   const double target =
-      axis.values.get(Role::target_torque, 0.0) + (ramped ? 0.0 : axis.offset(Role::torque_offset));
+      axis.commanded(Role::target_torque) + (ramped ? 0.0 : axis.offset(Role::torque_offset));
   const double slope =
       ramped ? axis.values.get(Role::torque_slope, kUnlimited) : streamedSlope(axis, target);
   const double change = slope * kDriveStepS;

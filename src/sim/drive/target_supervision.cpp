@@ -58,7 +58,7 @@ bool TargetSupervision::torqueReached() {
   const DriveValues& values = axis_.values;
   if (!values.has(Role::torque_reached_on)) {
     const bool profiled = axis_.mode->behaviour == ModeBehaviour::profile_torque;
-    return profiled && axis_.demand.torque == values.get(Role::target_torque, 0.0);
+    return profiled && axis_.demand.torque == axis_.commanded(Role::target_torque);
   }
   const double above = std::fabs(axis_.motor.torque()) - values.get(Role::torque_reached_base, 0.0);
   const Role limit = torque_above_ ? Role::torque_reached_off : Role::torque_reached_on;
@@ -79,7 +79,7 @@ bool TargetSupervision::reached(bool halted, const ProfilePosition& set_points) 
       return halted ? axis_.standing() : there && !set_points.waits();
     }
     case ModeBehaviour::profile_velocity: {
-      const double difference = values.get(Role::target_velocity, 0.0) - axis_.motor.velocity();
+      const double difference = axis_.commanded(Role::target_velocity) - axis_.motor.velocity();
       const bool inside =
           std::fabs(difference) <= std::fabs(values.get(Role::velocity_window, kSameSpeed));
       const bool there =

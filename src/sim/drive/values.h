@@ -67,6 +67,7 @@ enum class Role : std::uint8_t {
   profile_deceleration,
   quick_stop_deceleration,
   motion_profile_type,
+  polarity,
   torque_slope,
   homing_method,
   homing_search_speed,
@@ -103,6 +104,7 @@ enum class Role : std::uint8_t {
   save_zero,             ///< vendor object: the present position becomes 0
   homing_start,          ///< vendor object: 1 begins homing instead of controlword bit 4
   software_reset,        ///< vendor object: 1 starts the drive anew
+  reversed,              ///< vendor object: 1: forward is the other way round, from power-on on
   brake_delay,           ///< vendor object: from operation enabled until commands count
   encoder_resolution,    ///< vendor object: encoder counts of a turn
   gear_numerator,        ///< vendor object: so many encoder counts are ...
