@@ -176,5 +176,50 @@ TEST(Sv660cPeriod, ThatItDoesNotFollowIsRefused) {
   EXPECT_EQ(problemsOf("0.02"), "");
 }
 
+// H02.02 = 1 [L3400-3418]: the joint stands at 0.02 rad, and the drive counts the other way round.
+TEST(Sv660cTurnedRound, ByH0202ReadsTheOtherWayAndIsNotEnabled) {
+  Scene scene(loadText(
+      sv660cJoint({}, "initial_position: 0.02, " +
+                          sv660cDelivered("[0x2002, 3, forward_direction, uint16, rw, -, 1]"))));
+  ASSERT_TRUE(scene.boot()) << scene.told();
+  EXPECT_NEAR(scene.position("joint"), 0.02, 1e-6);
+  EXPECT_NEAR(scene.state("joint").position, -0.02, 1e-6) << "the drive obeys";
+  const auto enabled = scene.procedure(ProcedureKind::enable, "joint");
+  EXPECT_FALSE(enabled.success);
+  EXPECT_THAT(enabled.message, AllOf(HasSubstr("calls the other direction positive (H02.02)"),
+                                     HasSubstr("forward_direction (2002:03) is 1 instead of 0")));
+  EXPECT_FALSE(scene.truth("joint").power_stage_on);
+}
+
+// 607Eh [L15582-15598], written by a service: it is compared again before each enabling.
+TEST(Sv660cTurnedRound, ByItsPolarityIsNotEnabledUntilThatIsTakenBack) {
+  Sv660cReady scene(sv660cJoint(", homing: {method: 35, required: true}"), "ip");
+  ASSERT_TRUE(scene.procedure(ProcedureKind::home, "joint").success) << scene.told();
+  ASSERT_TRUE(scene.state("joint").homed);
+  const auto early = sv660cWrite(scene, "polarity", "128");
+  EXPECT_FALSE(early.success) << "under power";
+  EXPECT_EQ(sv660cNumber(scene, 0x607E), 0U);
+  ASSERT_TRUE(scene.procedure(ProcedureKind::disable, "joint").success);
+  const auto written = sv660cWrite(scene, "polarity", "128");
+  ASSERT_TRUE(written.success) << written.message;
+  scene.run(500ms);
+  EXPECT_FALSE(scene.state("joint").homed);
+  scene.forget();
+  const auto refused = scene.procedure(ProcedureKind::enable, "joint");
+  EXPECT_FALSE(refused.success);
+  EXPECT_THAT(refused.message, AllOf(HasSubstr("the drive turns signs by itself"),
+                                     HasSubstr("polarity (607E:00) is 128 instead of 0")));
+  scene.run(500ms);
+  EXPECT_FALSE(scene.truth("joint").power_stage_on);
+  EXPECT_EQ(scene.seen("joint").travel(), 0.0);
+  ASSERT_TRUE(sv660cWrite(scene, "polarity", "0").success);
+  scene.run(500ms);
+  ASSERT_TRUE(scene.procedure(ProcedureKind::enable, "joint").success) << scene.told();
+  ASSERT_TRUE(scene.procedure(ProcedureKind::home, "joint").success) << scene.told();
+  ASSERT_EQ(scene.setpoint("joint", 0.3), "");
+  scene.run(3s);
+  EXPECT_NEAR(scene.position("joint"), 0.3, 1e-5);
+}
+
 }  // namespace
 }  // namespace cia402
