@@ -229,14 +229,18 @@ const sim::FaultDefinition* Stage::fault(std::size_t axis, const std::string& na
 bool Stage::coasts(std::size_t axis, const std::string& name) {
   const sim::FaultDefinition* const known = fault(axis, name);
   if (known == nullptr || known->warning) return false;
-  if (known->reaction) return *known->reaction == sim::Ramp::coast;
+  const auto lets_go = [](sim::Ramp ramp) {
+    return ramp == sim::Ramp::coast || ramp == sim::Ramp::dynamic_brake;
+  };
+  if (known->reaction_by) return true;
+  if (known->reaction) return lets_go(*known->reaction);
   const sim::AxisPlace& place = facts_[axis].place;
   const sim::OptionTable& table = loaded_.drives[place.drive].definition->fault_reaction;
   const sim::Entry* const option =
       driveOf(axis).dictionary().find(sim::ofAxis({0x605E, 0}, place.axis));
   const auto chosen =
       table.options.find(option == nullptr ? table.fallback : sim::asSigned(*option));
-  return chosen != table.options.end() && chosen->second.ramp == sim::Ramp::coast;
+  return chosen != table.options.end() && lets_go(chosen->second.ramp);
 }
 
 const AxisFacts* Stage::find(const std::string& name) const {

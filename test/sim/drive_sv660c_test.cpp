@@ -70,8 +70,8 @@ TEST_F(Sv660c, QuickStopEndsAsItsOptionSays) {
 }
 
 // 6084h 2, 6085h 8 turns/s^2; from 2 turns/s: 1 and 1/4 turn. As hard as it can, 3 times the rated
-// torque, 3000 turns/s^2; coasting, 30 turns/s^2 of friction and 0.5/s of the speed. What begins
-// with the dynamic brake coasts here.
+// torque, 3000 turns/s^2; coasting, 30 turns/s^2 of friction and 0.5/s of the speed; by the dynamic
+// brake 300 more, which no manual tells: 4 / 662 of a turn.
 TEST_F(Sv660c, DisablingEndsAsItsOptionSays) {
   struct Option {
     unsigned code;  // 605Ch as sent
@@ -80,8 +80,8 @@ TEST_F(Sv660c, DisablingEndsAsItsOptionSays) {
   };
   for (const Option& option :
        {Option{0xFFFC, 0.25, false}, Option{0xFFFD, 0.0007, false}, Option{0xFFFE, 1.0, false},
-        Option{0xFFFF, 0.0656, true}, Option{0, 0.0656, true}, Option{1, 1.0, false},
-        Option{2, 0.0656, true}}) {
+        Option{0xFFFF, 0.0060, true}, Option{0, 0.0656, true}, Option{1, 1.0, false},
+        Option{2, 0.0060, true}}) {
     bench.write(0x605C, 0, option.code, 2);
     bench.write(0x6084, 0, 16777216, 4);
     bench.write(0x6085, 0, 67108864, 4);
@@ -103,6 +103,94 @@ TEST_F(Sv660c, DisablingEndsAsItsOptionSays) {
     control(0x00);
   }
   EXPECT_EQ(bench.refusal(0x605C, 0, 3, 2), 0x06090031U) << "-4 to 2 [L15043]";
+}
+
+// A fault of class 1 by H02.08 [L3500-3514], one of class 2 by 605Eh [L15101-15153]: at once
+// without power, and to rest by the dynamic brake or without it.
+TEST_F(Sv660c, AFaultEndsByTheDynamicBrakeWhereItsOptionSaysSo) {
+  struct Option {
+    const char* fault;
+    std::uint16_t object;
+    std::uint8_t sub;
+    unsigned code;
+    double way;  // turns
+  };
+  for (const Option& option :
+       {Option{"encoder", 0x2002, 9, 0, 0.0656}, Option{"encoder", 0x2002, 9, 1, 0.0060},
+        Option{"encoder", 0x2002, 9, 2, 0.0060}, Option{"position_command", 0x605E, 0, 0, 0.0656},
+        Option{"position_command", 0x605E, 0, 0xFFFF, 0.0060},
+        Option{"position_command", 0x605E, 0, 4, 0.0060}}) {
+    bench.write(option.object, option.sub, option.code, 2);
+    mode(3);
+    enable();
+    bench.write(0x60FF, 0, 16777216, 4);
+    bench.run(ms(1500));
+    const auto truth = [this] { return bench.drive->truth(bench.now); };
+    ASSERT_NEAR(truth().velocity_turns, 2.0, 1e-3) << option.code;
+    const double from = truth().position_turns;
+    ASSERT_TRUE(bench.drive->inject(option.fault, bench.now));
+    EXPECT_FALSE(truth().power_stage_on) << option.fault;
+    EXPECT_EQ(word(), 0x0218) << option.fault;
+    bench.run(ms(1500));
+    EXPECT_NEAR(truth().velocity_turns, 0.0, 1e-6);
+    EXPECT_NEAR(truth().position_turns - from, option.way, 0.05 * option.way + 1e-3)
+        << option.fault << " " << option.code;
+    bench.write(0x60FF, 0, 0, 4);
+    control(0x80);
+    control(0x00);
+    EXPECT_EQ(word(), 0x0250);
+  }
+}
+
+// In pt "it stops by 6087h" for 605Ah = 1, 2, 5, 6 and 605Dh = 1, 2 [L15710-15712], here 100 % a
+// second: 50 % push against the speed limit until friction (3 %) is stronger, then the motor
+// coasts.
+TEST_F(Sv660c, AStopOfATorqueGoesBy6087h) {
+  const auto speed = [this] { return bench.drive->truth(bench.now).velocity_turns; };
+  struct Option {
+    std::uint16_t object;
+    unsigned code;
+    bool fades;
+  };
+  for (const Option& option :
+       {Option{0x605A, 1, true}, Option{0x605A, 2, true}, Option{0x605A, 3, false},
+        Option{0x605A, 5, true}, Option{0x605A, 6, true}, Option{0x605A, 7, false},
+        Option{0x605D, 1, true}, Option{0x605D, 2, true}, Option{0x605D, 3, false}}) {
+    bench.write(option.object, 0, option.code, 2);
+    bench.write(0x607F, 0, 8388608, 4);
+    bench.write(0x6087, 0, 1000, 4);
+    mode(4);
+    enable();
+    bench.write(0x6071, 0, 500, 2);
+    bench.run(ms(1000));
+    ASSERT_NEAR(speed(), 1.0, 0.02) << option.code;
+    option.object == 0x605A ? control(0x02) : control(0x0F, 0x01);
+    bench.run(ms(300));
+    EXPECT_NEAR(speed(), option.fades ? 1.0 : 0.0, 0.02) << option.object << " " << option.code;
+    bench.run(ms(400));
+    EXPECT_NEAR(speed(), 0.0, 1e-6) << option.object << " " << option.code;
+    const bool holds = option.object == 0x605D || option.code > 4;
+    EXPECT_EQ(bench.drive->truth(bench.now).power_stage_on, holds) << option.code;
+    bench.write(0x6071, 0, 0, 2);
+    control(0x00);
+  }
+}
+
+// Disabling is not among them: 605Ch = 1 brakes by 6084h, here 2 turns/s^2.
+TEST_F(Sv660c, ATorqueIsDisabledBy6084h) {
+  bench.write(0x605C, 0, 1, 2);
+  bench.write(0x607F, 0, 8388608, 4);
+  bench.write(0x6084, 0, 16777216, 4);
+  bench.write(0x6087, 0, 1000, 4);
+  mode(4);
+  enable();
+  bench.write(0x6071, 0, 500, 2);
+  bench.run(ms(1000));
+  control(0x07);
+  bench.run(ms(250));
+  EXPECT_NEAR(bench.drive->truth(bench.now).velocity_turns, 0.5, 0.03);
+  bench.run(ms(300));
+  EXPECT_EQ(word(), 0x0233);
 }
 
 TEST_F(Sv660c, AFaultIsResetByTheEdgeOfBit7WhichBlocksAllElse) {

@@ -42,8 +42,9 @@ struct StopDrive {
   bool halt_bit_brakes_efforts = false;
   bool efforts_by_mode = false;  ///< `stop_mode` of its profile brakes them
   bool float_numbers =
-      false;                ///< at the joint's side of the gear, and approaches its targets itself
-  bool sync_fault = false;  ///< where SYNC is late in interpolated position mode
+      false;  ///< at the joint's side of the gear, and approaches its targets itself
+  double dynamic_brake = 0.0;  ///< of the rated torque, by which its coasting_fault ends
+  bool sync_fault = false;     ///< where SYNC is late in interpolated position mode
 };
 
 inline Mechanics geared(double rated, double turns_per_s2, double friction, double strongest,
@@ -68,7 +69,8 @@ inline const StopDrive& stopDrive(const std::string& profile) {
     StopDrive sv660c{geared(2.39, 1000.0, 0.03, 450.0 / 239.0), "450.0", "following_error",
                      "encoder"};
     sv660c.orphaned = Orphaned::goes_on;
-    sv660c.halt_bit_brakes_efforts = true;
+    sv660c.efforts_by_mode = true;
+    sv660c.dynamic_brake = 0.3;
     sv660c.sync_fault = true;
     drives["sv660c"] = sv660c;
     // Its 600/min are 1.57 rad/s behind this gear; 605Eh, which it has for reading only, says

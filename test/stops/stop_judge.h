@@ -83,7 +83,8 @@ inline Braking brakingOf(Stop stop, const Mover& mover) {
     case Stop::fault:
       return {0.001, quick};
     case Stop::coasting_fault:
-      return {0.001, mechanics.friction()};
+      return {0.001,
+              mechanics.friction() + stopDrive(mover.drive).dynamic_brake * mechanics.by_rated};
     case Stop::shutdown:
       if (effort || mover.motion == Motion::goal) return {kReactionS + kCycleS, quick};
       return {kReactionS, ramp};

@@ -180,5 +180,56 @@ TEST(Sv660cHomingResult, IsAnErrorInWordsAtALimitSwitch) {
   EXPECT_LT(scene.position("joint"), 0.49) << "0.8 rad/s end by 4 rad/s^2 after 0.08 rad";
 }
 
+// 607Ch counts at once in a drive that has homed [L15530], so that its positions jump.
+TEST(Sv660cHomeOffset, ThatIsWrittenLaterIsRefusedUnderPowerAndUnhomes) {
+  Sv660cReady scene(sv660cJoint(sv660cHoming(35)));
+  ASSERT_TRUE(scene.procedure(ProcedureKind::home, "joint").success) << scene.told();
+  ASSERT_TRUE(scene.state("joint").homed);
+  const auto counted = [&] { return static_cast<std::int32_t>(sv660cNumber(scene, 0x6064)); };
+  const std::int32_t before = counted();
+  EXPECT_FALSE(sv660cWrite(scene, "home_offset", "397887").success) << "under power";
+  ASSERT_TRUE(scene.procedure(ProcedureKind::disable, "joint").success);
+  const auto written = sv660cWrite(scene, "home_offset", "397887");
+  ASSERT_TRUE(written.success) << written.message;
+  scene.run(500ms);
+  const double jump = (0.5 - kAtHome) * 50.0 * 100000 / 6.283185307179586;  // 397887 are 0.5 rad
+  EXPECT_NEAR(counted() - before, jump, 1.0) << "the drive has taken it";
+  EXPECT_FALSE(scene.state("joint").homed);
+  scene.forget();
+  const auto enabled = scene.procedure(ProcedureKind::enable, "joint");
+  EXPECT_TRUE(enabled.success) << enabled.message;
+  scene.run(500ms);
+  EXPECT_LT(scene.seen("joint").travel(), 1e-5);
+  ASSERT_TRUE(scene.procedure(ProcedureKind::disable, "joint").success);
+  ASSERT_TRUE(scene.procedure(ProcedureKind::home, "joint").success) << scene.told();
+  EXPECT_NEAR(scene.state("joint").position, kAtHome, 1e-5) << "that of the configuration again";
+}
+
+// E09.1 [L15534]: 607Ch beyond 607Dh, which has the limits of the joint once it is homed.
+TEST(Sv660cHomeOffset, BeyondTheLimitsThatTheDriveHasIsToldInWords) {
+  Sv660cReady scene(sv660cJoint(sv660cHoming(35)));
+  ASSERT_TRUE(scene.procedure(ProcedureKind::home, "joint").success) << scene.told();
+  ASSERT_EQ(static_cast<std::int32_t>(sv660cNumber(scene, 0x607D, 2)), 1989437) << "2.5 rad";
+  ASSERT_TRUE(scene.procedure(ProcedureKind::disable, "joint").success);
+  EXPECT_TRUE(sv660cWrite(scene, "home_offset", "1989438").success);
+  scene.run(500ms);
+  EXPECT_THAT(scene.axis("joint").faultText(),
+              HasSubstr("EE09 home offset beyond the position limits"));
+  ASSERT_TRUE(scene.procedure(ProcedureKind::clear_faults, "joint").success) << scene.told();
+  ASSERT_TRUE(scene.procedure(ProcedureKind::home, "joint").success) << scene.told();
+  EXPECT_NEAR(scene.state("joint").position, kAtHome, 1e-5);
+}
+
+// The driver opens 607Dh before it searches: no E09.1, also the next time.
+TEST(Sv660cHomeOffset, BeyondTheLimitsOfTheJointIsTakenEachTime) {
+  Sv660cReady scene(sv660cJoint(sv660cWith(sv660cHoming(35), "0.250000", "2.6")));
+  for (int i = 0; i < 2; ++i) {
+    const auto homed = scene.procedure(ProcedureKind::home, "joint");
+    EXPECT_TRUE(homed.success) << homed.message << scene.told();
+    EXPECT_NEAR(scene.state("joint").position, 2.6, 1e-5);
+    EXPECT_EQ(scene.axis("joint").faultText(), "");
+  }
+}
+
 }  // namespace
 }  // namespace cia402

@@ -164,8 +164,9 @@ TEST(Sv660cObjects, TellTheSwitches) {
   ASSERT_TRUE(scene.boot()) << scene.told();
   const auto read = scene.call(bus::ReadObjectCommand{"joint", "digital_inputs"});
   EXPECT_TRUE(read.success);
-  EXPECT_THAT(read.message, HasSubstr(" 6 (0x00000006): forward limit, home switch"))
-      << "bits 1 and 2 [L16153]";
+  EXPECT_THAT(read.message,
+              HasSubstr(" 8454150 (0x00810006): di1, di8, forward limit, home switch"))
+      << "bits 1 and 2, and those of their terminals, 16 and 23 [L16153]";
 }
 
 }  // namespace

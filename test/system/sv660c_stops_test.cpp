@@ -19,6 +19,7 @@ enum class Sv660cWay {
   gentle,  ///< 6084h, 4 rad/s^2: 0.281 rad
   quick,   ///< 6085h, 8 rad/s^2: 0.141 rad
   hard,    ///< 100 N m are 0.837 of the rated torque, 105 rad/s^2: 0.011 rad
+  brake,   ///< shorted windings, 330 turns/s^2 of the motor, 41.5 rad/s^2; without power at once
   coasts,  ///< friction and what goes with the speed, 3.8 to 4.5 rad/s^2; without power at once
 };
 
@@ -40,6 +41,8 @@ double sv660cWayOf(Sv660cWay way) {
       return kSv660cSpeed * kSv660cSpeed / 2.0 / 8.0;
     case Sv660cWay::hard:
       return kSv660cSpeed * kSv660cSpeed / 2.0 / 105.0;
+    case Sv660cWay::brake:
+      return kSv660cSpeed * kSv660cSpeed / 2.0 / 41.5;
     case Sv660cWay::coasts:
       break;
   }
@@ -61,7 +64,7 @@ class Sv660cOptions : public testing::TestWithParam<Sv660cOption> {
   void expectStops(Scene& scene, Sv660cWay how = GetParam().way) {
     scene.run(10ms);
     const bool powered = scene.truth("joint").power_stage_on;
-    EXPECT_EQ(powered, how != Sv660cWay::coasts);
+    EXPECT_EQ(powered, how != Sv660cWay::coasts && how != Sv660cWay::brake);
     ASSERT_TRUE(scene.runUntil([&] { return std::fabs(scene.velocity("joint")) < 1e-3; }, 3s));
     const double way = sv660cWayOf(how);
     EXPECT_NEAR(scene.position("joint") - from_, way, 0.12 * way + kSv660cSpeed * 0.016);
@@ -136,12 +139,12 @@ INSTANTIATE_TEST_SUITE_P(
                                  "zero speed, then dynamic brake"},
                     Sv660cOption{"disable_operation_option", -2, Sv660cWay::gentle, false,
                                  "by 6084h (609Ah in homing), then dynamic brake"},
-                    Sv660cOption{"disable_operation_option", -1, Sv660cWay::coasts, false,
+                    Sv660cOption{"disable_operation_option", -1, Sv660cWay::brake, false,
                                  "dynamic brake, which stays"},
                     Sv660cOption{"disable_operation_option", 0, Sv660cWay::coasts, false, "coasts"},
                     Sv660cOption{"disable_operation_option", 1, Sv660cWay::gentle, false,
                                  "by 6084h (609Ah in homing), then free"},
-                    Sv660cOption{"disable_operation_option", 2, Sv660cWay::coasts, false,
+                    Sv660cOption{"disable_operation_option", 2, Sv660cWay::brake, false,
                                  "dynamic brake, then free"}),
     nameOfSv660cOption);
 
@@ -165,7 +168,6 @@ INSTANTIATE_TEST_SUITE_P(Where605Dh, Sv660cHalt,
                                                       "as hard as it can, holds"}),
                          nameOfSv660cOption);
 
-// The simulated motor has no dynamic brake: what begins with it coasts.
 class Sv660cFaultStop : public Sv660cOptions {};
 
 TEST_P(Sv660cFaultStop, EndsAsItsOptionSays) {
@@ -186,7 +188,7 @@ INSTANTIATE_TEST_SUITE_P(
                                  "by 6085h, then dynamic brake"},
                     Sv660cOption{"fault_reaction_option", -2, Sv660cWay::gentle, false,
                                  "by 6084h (609Ah in homing), then dynamic brake"},
-                    Sv660cOption{"fault_reaction_option", -1, Sv660cWay::coasts, false,
+                    Sv660cOption{"fault_reaction_option", -1, Sv660cWay::brake, false,
                                  "dynamic brake, which stays"},
                     Sv660cOption{"fault_reaction_option", 0, Sv660cWay::coasts, false, "coasts"},
                     Sv660cOption{"fault_reaction_option", 1, Sv660cWay::gentle, false,
@@ -195,7 +197,7 @@ INSTANTIATE_TEST_SUITE_P(
                                  "by 6085h, then free"},
                     Sv660cOption{"fault_reaction_option", 3, Sv660cWay::hard, false,
                                  "as hard as it can, then free"},
-                    Sv660cOption{"fault_reaction_option", 4, Sv660cWay::coasts, false,
+                    Sv660cOption{"fault_reaction_option", 4, Sv660cWay::brake, false,
                                  "dynamic brake, then free"}),
     nameOfSv660cOption);
 

@@ -32,8 +32,9 @@ struct AbsoluteEncoderDefinition {
   Wide mechanical;                                       ///< counts from the drive's zero
   /// The same within one turn of the load, which has so many counts, or so many turns of the motor.
   Wide rotary, load_counts;
-  Wide load_gear;                               ///< numerator and denominator
-  std::optional<fieldbus::ObjectId> overflows;  ///< how often 65536 turns have passed
+  std::optional<fieldbus::ObjectId> rotary_units;  ///< in position units
+  Wide load_gear;                                  ///< numerator and denominator
+  std::optional<fieldbus::ObjectId> overflows;     ///< how often 65536 turns have passed
   /// While it is 0 more than 65535 turns are the fault `turns_overflow`.
   std::optional<fieldbus::ObjectId> overflow_masked;
   std::optional<fieldbus::ObjectId> reset;  ///< 2 forgets the turns

@@ -58,6 +58,13 @@ struct MakerBits {
   std::uint16_t before_start = 0;
 };
 
+/// In which stops a torque mode only lets the torque go, by 6087h, and brakes nothing.
+enum class StopsFade : std::uint8_t {
+  never,
+  ramps,   ///< halt and quick stop by a ramp; once the motor stands it is held
+  always,  ///< halt, quick stop and disabling
+};
+
 /// A value of 6060h.
 struct ModeDefinition {
   std::int64_t number = 0;
@@ -66,10 +73,10 @@ struct ModeDefinition {
   unsigned set_point_bit = 4;
   Bit12 bit_12 = Bit12::none;
   Bit13 bit_13 = Bit13::none;
-  bool target_reached = true;       ///< statusword bit 10 is used
-  std::optional<Role> velocity;     ///< speed (limit) of the mode, none: only the maxima
-  std::optional<Role> torque;       ///< torque limit of the mode
-  bool stops_fade = false;          ///< torque modes: 6087h lets the torque go, and nothing brakes
+  bool target_reached = true;    ///< statusword bit 10 is used
+  std::optional<Role> velocity;  ///< speed (limit) of the mode, none: only the maxima
+  std::optional<Role> torque;    ///< torque limit of the mode
+  StopsFade stops_fade = StopsFade::never;
   bool delayed = false;             ///< interpolated_position: a set-point begins one SYNC later
   std::int64_t queue = 1;           ///< profile_position: set-points that may wait for those before
   bool stop_empties_queue = false;  ///< whatever stops the motor takes those away
@@ -89,10 +96,11 @@ enum class RangeUse : std::uint8_t {
 
 /// How motion ends.
 enum class Ramp : std::uint8_t {
-  coast,       ///< power off at once
-  slow_down,   ///< 6084h
-  quick_stop,  ///< 6085h
-  limit,       ///< as hard as the torque limit allows
+  coast,          ///< power off at once
+  dynamic_brake,  ///< the same, and the windings of the motor are shorted
+  slow_down,      ///< 6084h
+  quick_stop,     ///< 6085h
+  limit,          ///< as hard as the torque limit allows
 };
 
 /// What a value of an option code does.
@@ -130,8 +138,14 @@ struct FaultDefinition {
   Duration persists{0};          ///< the cause stays so long; a reset before is refused
   bool ends_by_itself = false;   ///< the drive resets it as soon as its cause is gone
   std::optional<Ramp> reaction;  ///< instead of 605Eh, e.g. coast where the stage is broken
-  bool voltage_lost = false;     ///< statusword bit 4 goes while the cause lasts
-  std::int64_t details = 0;      ///< in the object of the role error_details
+  /// That by the number of an object; a number that is not listed leaves it to 605Eh.
+  struct ReactionBy {
+    fieldbus::ObjectId object;
+    std::map<std::int64_t, Ramp> ramps;
+  };
+  std::optional<ReactionBy> reaction_by;
+  bool voltage_lost = false;  ///< statusword bit 4 goes while the cause lasts
+  std::int64_t details = 0;   ///< in the object of the role error_details
   /// Object whose number says what becomes of it: reaction (bits 24 to 31), resets itself (16 to
   /// 23), code. See AlarmWords.
   std::optional<fieldbus::ObjectId> word;
@@ -163,7 +177,9 @@ struct DriveHomingDefinition {
   bool home_offset_is_zero_shift = false;      ///< 6064h at home = -607Ch instead of +607Ch
   bool returns = false;                        ///< moves back onto the home position
   bool stops_quickly_at_limits = false;        ///< by 6085h instead of by 609Ah
-  bool stops_by_torque = false;  ///< what pushes is at a hard stop, whether it moves or not
+  bool stops_by_torque = false;        ///< what pushes is at a hard stop, whether it moves or not
+  bool stop_torque_bounds = false;     ///< in a search for a hard stop nothing pushes harder
+  bool offset_counts_at_once = false;  ///< 607Ch, once it has homed since its power came
   /// What the object of a terminal says where a switch is connected to it; a method whose switches
   /// are not at one terminal each is the fault `terminal_setup`. Empty: nobody looks.
   std::map<HomingInput, std::int64_t> terminal_functions;

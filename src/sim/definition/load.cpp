@@ -28,6 +28,7 @@ void readMotor(DefinitionReader& reader, MotorParameters& out) {
   reader.read("max_speed", out.max_speed, 1e-3, 1e6);
   reader.read("friction", out.friction, 0.0, 10.0);
   reader.read("viscous_friction", out.viscous_friction, 0.0, 1e3);
+  reader.read("dynamic_brake", out.dynamic_brake, 0.0, 100.0);
 }
 
 void readMotors(DefinitionReader& reader, DriveDefinition& out) {
@@ -89,6 +90,8 @@ void readDefinition(DefinitionReader& reader, bool extends, DriveDefinition& out
   reader.section("effective", [&](DefinitionReader& r) { readEffects(r, out.own.effects); });
   readClamped(reader, out.dictionary, out.own.clamped);
   reader.section("maker_states", [&](DefinitionReader& r) { readMakerStates(r, out.own.states); });
+  readMonitors(reader, out.own.monitors);
+  reader.section("counters", [&](DefinitionReader& r) { readCounters(r, out.own.monitors); });
   reader.read("full_pulse_width", out.own.full_pulse_width, 0.0, 1000.0);
   reader.section("memory", [&](DefinitionReader& r) { readMemory(r, out.memory); });
   reader.section("state_machine", [&](DefinitionReader& r) { readStateMachine(r, out); });

@@ -5,6 +5,7 @@
 
 #include "sim/definition/effect.h"
 #include "sim/definition/maker_states.h"
+#include "sim/definition/monitors.h"
 #include "sim/definition/own_bus.h"
 
 namespace cia402::sim {
@@ -15,6 +16,7 @@ struct MakersOwnDefinition {
   Effects effects;
   std::vector<fieldbus::ObjectId> clamped;  ///< out of range they take the limit
   MakerStates states;
+  MonitorsDefinition monitors;
   double full_pulse_width = 10.0;  ///< turns/s of MakerModes; no manual tells it
 };
 

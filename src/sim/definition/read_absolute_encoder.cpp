@@ -48,6 +48,7 @@ void readAbsoluteEncoder(DefinitionReader& reader, AbsoluteEncoderDefinition& ou
   readWide(reader, "encoder", out.encoder);
   readWide(reader, "mechanical", out.mechanical);
   readWide(reader, "rotary", out.rotary);
+  readEncoderObject(reader, "rotary_units", out.rotary_units);
   readWide(reader, "load_counts", out.load_counts);
   readWide(reader, "load_gear", out.load_gear);
   readEncoderObject(reader, "overflows", out.overflows);

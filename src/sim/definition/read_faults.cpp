@@ -19,6 +19,30 @@ std::optional<fieldbus::ObjectId> readObject(DefinitionReader& reader, const std
   return object;
 }
 
+/// A ramp, or by which object one is chosen.
+void readReaction(DefinitionReader& reader, FaultDefinition& fault) {
+  if (!reader.has("reaction")) return;
+  if (!reader.node("reaction").IsMap()) {
+    Ramp ramp = Ramp::coast;
+    reader.read("reaction", ramp, rampWords());
+    fault.reaction = ramp;
+    return;
+  }
+  FaultDefinition::ReactionBy by;
+  reader.section("reaction", [&](DefinitionReader& r) {
+    by.object = readObject(r, "object").value_or(by.object);
+    r.each("values", [&](const std::string& number, const yaml::Value& value) {
+      const auto option = yaml::parseInteger(number);
+      std::vector<std::string> words;
+      for (const auto& word : rampWords()) words.emplace_back(word.first);
+      const auto index = value.oneOf(words);
+      if (!option) return value.problem("'" + number + "' is no number of the object");
+      if (index) by.ramps[*option] = rampWords()[*index].second;
+    });
+  });
+  fault.reaction_by = by;
+}
+
 }  // namespace
 
 void readFault(const std::string& name, const yaml::Value& from, DriveDefinition& out) {
@@ -57,11 +81,7 @@ void readFault(const std::string& name, const yaml::Value& from, DriveDefinition
   double seconds = 0.0;
   reader.read("persists_for", seconds, 0.0, kForeverS);
   fault.persists = fromSeconds(seconds);
-  Ramp reaction = Ramp::coast;
-  if (reader.has("reaction")) {
-    reader.read("reaction", reaction, rampWords());
-    fault.reaction = reaction;
-  }
+  readReaction(reader, fault);
   const auto known = std::find_if(out.faults.begin(), out.faults.end(),
                                   [&](const auto& other) { return other.name == name; });
   known == out.faults.end() ? out.faults.push_back(fault) : void(*known = fault);

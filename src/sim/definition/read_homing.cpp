@@ -117,6 +117,8 @@ void readHoming(DefinitionReader& reader, DriveHomingDefinition& out) {
   reader.read("returns_to_home", out.returns);
   reader.read("stops_quickly_at_limits", out.stops_quickly_at_limits);
   reader.read("stops_by_torque", out.stops_by_torque);
+  reader.read("stop_torque_bounds", out.stop_torque_bounds);
+  reader.read("offset_counts_at_once", out.offset_counts_at_once);
   reader.section("terminals", [&](DefinitionReader& r) { readTerminals(r, out); });
   reader.each("routes", [&](const std::string& number, const yaml::Value& value) {
     const auto method = yaml::parseInteger(number);

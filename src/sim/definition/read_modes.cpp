@@ -28,6 +28,8 @@ const std::vector<std::pair<const char*, Bit13>> kBit13 = {
     {"none", Bit13::none},
     {"following_error", Bit13::following_error},
     {"homing_error", Bit13::homing_error}};
+const std::vector<std::pair<const char*, StopsFade>> kStopsFade = {
+    {"false", StopsFade::never}, {"ramps", StopsFade::ramps}, {"true", StopsFade::always}};
 std::optional<Role> readRole(DefinitionReader& reader, const std::string& key) {
   if (!reader.has(key)) return std::nullopt;
   std::string text;
@@ -106,7 +108,7 @@ void readMode(const std::string& number, const yaml::Value& from, DefinitionRead
   }
   mode.torque = readRole(reader, "torque");
   reader.read("delayed", mode.delayed);
-  reader.read("stops_fade", mode.stops_fade);
+  reader.read("stops_fade", mode.stops_fade, kStopsFade);
   reader.read("queue", mode.queue, 1, 64);
   reader.read("stop_empties_queue", mode.stop_empties_queue);
   reader.read("replaces_queue", mode.replaces_queue);

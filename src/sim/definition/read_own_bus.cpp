@@ -90,6 +90,36 @@ void readEffects(DefinitionReader& reader, Effects& out) {
   }
 }
 
+void readMonitors(DefinitionReader& reader, MonitorsDefinition& out) {
+  using Shows = MonitorDefinition::Shows;
+  static const std::vector<std::pair<const char*, Shows>> kShows = {
+      {"speed", Shows::speed}, {"torque", Shows::torque}, {"load", Shows::load},
+      {"angle", Shows::angle}, {"time", Shows::time},     {"total_time", Shows::total_time}};
+  reader.each("monitors", [&](const std::string& key, const yaml::Value& value) {
+    const auto id = fieldbus::parseObjectId(key);
+    if (!id) return reader.problem("monitors", "'" + key + "' is no object like \"200B:1B\"");
+    MonitorDefinition monitor;
+    if (value.node().IsMap()) {
+      DefinitionReader row(value);
+      row.read("shows", monitor.shows, kShows);
+      row.read("scale", monitor.scale, -1e9, 1e9);
+    } else if (const std::string text = value.text().value_or(""); text.find(':') < text.size()) {
+      monitor.shows = Shows::object;
+      monitor.object = fieldbus::parseObjectId(text);
+      if (!monitor.object) value.problem("must be a number, or an object like \"6064:00\"");
+    } else {
+      monitor.scale = value.number({-1e9, 1e9, false}).value_or(0.0);
+    }
+    out.shown[*id] = monitor;
+  });
+}
+
+void readCounters(DefinitionReader& reader, MonitorsDefinition& out) {
+  readObject(reader, "nmt_length", out.nmt_length);
+  readObject(reader, "nmt_command", out.nmt_command);
+  readObject(reader, "heartbeat_length", out.heartbeat_length);
+}
+
 void readClamped(DefinitionReader& reader, const DictionaryTemplate& dictionary,
                  std::vector<fieldbus::ObjectId>& out) {
   constexpr const char* kKey = "clamped";

@@ -51,10 +51,12 @@ void readSupervision(DefinitionReader& reader, DriveDefinition& out) {
 }  // namespace
 
 const std::vector<std::pair<const char*, Ramp>>& rampWords() {
-  static const std::vector<std::pair<const char*, Ramp>> kRamps = {{"coast", Ramp::coast},
-                                                                   {"slow_down", Ramp::slow_down},
-                                                                   {"quick_stop", Ramp::quick_stop},
-                                                                   {"limit", Ramp::limit}};
+  static const std::vector<std::pair<const char*, Ramp>> kRamps = {
+      {"coast", Ramp::coast},
+      {"dynamic_brake", Ramp::dynamic_brake},
+      {"slow_down", Ramp::slow_down},
+      {"quick_stop", Ramp::quick_stop},
+      {"limit", Ramp::limit}};
   return kRamps;
 }
 

@@ -17,6 +17,7 @@ constexpr std::pair<const char*, InputFunction> kInputFunctions[] = {
     {"fault_reset", InputFunction::fault_reset},
     {"set_home", InputFunction::set_home},
     {"clear_history", InputFunction::clear_history},
+    {"emergency_stop", InputFunction::emergency_stop},
     {"motor_enable", InputFunction::motor_enable},
     {"pause", InputFunction::pause},
     {"step", InputFunction::step}};
@@ -90,6 +91,10 @@ void readTerminals(DefinitionReader& reader, TerminalsDefinition& out) {
   std::int64_t first = out.first_bit;
   reader.read("first_bit", first, 0, 31);
   out.first_bit = static_cast<unsigned>(first);
+  if (reader.has("bits")) out.bits.clear();
+  reader.list("bits", [&](const yaml::Value& item) {
+    out.bits.push_back(static_cast<unsigned>(item.integer(0, 31).value_or(0)));
+  });
   if (reader.has("normally_closed")) out.normally_closed = 0;
   reader.list("normally_closed", [&](const yaml::Value& item) {
     out.normally_closed |= 1U << item.integer(0, 31).value_or(0);

@@ -16,12 +16,13 @@ enum class InputFunction : std::uint8_t {
   negative_limit,
   positive_limit,
   home_switch,
-  fault_reset,    ///< an edge resets faults
-  set_home,       ///< an edge makes the present position 0
-  clear_history,  ///< an edge empties 1003h
-  motor_enable,   ///< enables the motor in a maker's mode (MakerModes)
-  pause,          ///< halts it there
-  step,           ///< an edge brings a step there
+  fault_reset,     ///< an edge resets faults
+  set_home,        ///< an edge makes the present position 0
+  clear_history,   ///< an edge empties 1003h
+  emergency_stop,  ///< an edge stops as the role emergency_stop does
+  motor_enable,    ///< enables the motor in a maker's mode (MakerModes)
+  pause,           ///< halts it there
+  step,            ///< an edge brings a step there
 };
 
 /// What an axis can tell by a digital output.
@@ -45,7 +46,11 @@ struct TerminalsDefinition {
   std::optional<fieldbus::ObjectId> inversion;
   /// With it: a bit for each input whose contact conducts while its switch is not active.
   std::uint32_t normally_closed = 0;
-  unsigned first_bit = 0;                     ///< with it: of the inputs in the role digital_inputs
+  unsigned first_bit = 0;  ///< with it: of the inputs in the role digital_inputs
+  /// Or: the bit of each input in the role digital_inputs, which is 1 where its function is active.
+  /// Its switch is wired for logic 0; a logic of 1 turns it round. Inputs beyond these are not
+  /// shown.
+  std::vector<unsigned> bits;
   std::optional<fieldbus::ObjectId> levels;   ///< of the virtual ones, a bit each
   std::optional<fieldbus::ObjectId> enabled;  ///< the virtual ones act
   std::optional<fieldbus::ObjectId> seen;     ///< those of them that are active

@@ -25,6 +25,12 @@ AbsoluteEncoder::AbsoluteEncoder(const DriveDefinition& definition, ObjectDictio
       low_battery_(definition.fault("battery_warning")),
       dictionary_(dictionary),
       core_(core) {
+  const auto object = [&](Role role) {
+    const auto found = definition.objects.find(role);
+    return found == definition.objects.end() ? Object() : Object(found->second);
+  };
+  gear_numerator_ = object(Role::gear_numerator);
+  gear_denominator_ = object(Role::gear_denominator);
   if (encoder_.counts != 0) showAll();
 }
 
@@ -53,6 +59,7 @@ void AbsoluteEncoder::showAll() {
   show(encoder_.encoder, [this, counts] { return countsOf(turned() * counts); });
   show(encoder_.mechanical, [this, counts] { return countsOf(core_.motion().counter() * counts); });
   show(encoder_.rotary, [this] { return countsOf(rotary()); });
+  show(encoder_.rotary_units, [this] { return countsOf(std::floor(rotary() / countsPerUnit())); });
   show(encoder_.overflows,
        [this] { return countsOf(std::trunc(std::floor(turned()) / (kMostTurns + 1.0))); });
 }
@@ -80,6 +87,10 @@ double AbsoluteEncoder::rotary() const {
   const double load = given > 0.0 ? given : counts * gear;
   const double at = core_.motion().counter() * counts;
   return at - load * std::floor(at / load);
+}
+
+double AbsoluteEncoder::countsPerUnit() const {
+  return number(gear_numerator_, 1.0) / number(gear_denominator_, 1.0);
 }
 
 bool AbsoluteEncoder::batteryLow() const {
@@ -119,7 +130,8 @@ void AbsoluteEncoder::lookAtTurns() {
   battery_low_ = batteryLow();
   if ((core_.statusword() & kStateBits) == kNotReady) return;
   if (std::exchange(battery_due_, false)) core_.raise(*battery_);
-  const bool beyond = std::fabs(std::floor(turned())) > kMostTurns;
+  const bool counts = kind() != EncoderKind::incremental;
+  const bool beyond = counts && std::fabs(std::floor(turned())) > kMostTurns;
   if (!beyond) told_ = false;
   if (!beyond || told_ || overflow_ == nullptr || number(encoder_.overflow_masked, 0.0) != 0.0) {
     return;

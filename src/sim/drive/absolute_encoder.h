@@ -39,10 +39,12 @@ class AbsoluteEncoder {
   EncoderKind kind() const;
   double turned() const;  ///< turns since its own zero, forward as from the factory
   double rotary() const;  ///< counts within a turn of the load
+  double countsPerUnit() const;
   void forgetTurns();
   bool batteryLow() const;
 
   const AbsoluteEncoderDefinition& encoder_;
+  Object gear_numerator_, gear_denominator_;                   ///< so many counts are so many units
   const FaultDefinition *overflow_, *battery_, *low_battery_;  ///< nullptr: it reports none
   ObjectDictionary& dictionary_;
   DriveCore& core_;

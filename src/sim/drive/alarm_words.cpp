@@ -8,7 +8,17 @@ constexpr fieldbus::ObjectId kReactionOption{0x605E, 0};
 
 }  // namespace
 
+const FaultDefinition& AlarmWords::reacting(const FaultDefinition& fault) {
+  const Entry* entry = dictionary_.find(fault.reaction_by->object);
+  const auto ramp = fault.reaction_by->ramps.find(entry == nullptr ? 0 : asSigned(*entry));
+  FaultDefinition& set = set_[fault.name];
+  set = fault;
+  if (ramp != fault.reaction_by->ramps.end()) set.reaction = ramp->second;
+  return set;
+}
+
 const FaultDefinition& AlarmWords::asSet(const FaultDefinition& fault) {
+  if (fault.reaction_by) return reacting(fault);
   const Entry* entry = fault.word ? dictionary_.find(*fault.word) : nullptr;
   if (entry == nullptr) return fault;
   FaultDefinition& set = set_[fault.name];

@@ -249,13 +249,13 @@ void DriveCore::startSegment() {
 
 void DriveCore::onWrite(Role role) {
   const bool enabled = power_.state() == PdsState::operation_enabled;
-  if (role == Role::homing_start && enabled) motion_.homeByObject();
+  if (role == Role::homing_start && enabled) motion_.homing().startByObject();
   if (role == Role::emergency_stop && enabled) power_.quickStop(now_);
   if (role == Role::alarm_select) faults_.alarms().show();
-  if (role == Role::save_zero) {
-    motion_.setCounter(0.0);
-    motion_.publish();
-  }
+  if (role == Role::save_zero) motion_.setCounter(0.0);
+  if (role == Role::home_offset) motion_.homing().offsetWritten();
+  if (const char* fault = motion_.takeFault()) raise(fault);
+  motion_.publish();
   updateStatusword();
 }
 

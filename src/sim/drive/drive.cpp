@@ -105,14 +105,12 @@ struct Drive::Impl : Device::Application, DriveCore::Reports {
     if (role == Role::software_reset && entry.number == 1) reset_at = now + kSoftwareReset;
     const bool command = role == Role::emergency_stop || role == Role::homing_start;
     const bool saves = role == Role::save_zero && entry.number != 0;
-    if (role == Role::alarm_select || saves || (command && entry.number == 1))
+    if (role == Role::alarm_select || role == Role::home_offset || saves ||
+        (command && entry.number == 1))
       axis.core.onWrite(*role);
     axis.encoder.written(entry);
     own_bus.written(entry, now);
-    if (axis.terminals.holds(entry.id)) {
-      obey(axis.terminals, axis.core, dictionary, definition->fault("terminal_setup"));
-      axis.core.motion().publish();
-    }
+    if (axis.terminals.holds(entry.id)) axis.obey();
   }
 
   bool badFloat(double value) const {
@@ -144,7 +142,7 @@ struct Drive::Impl : Device::Application, DriveCore::Reports {
   void onPowerOn(Time time) override {
     now = time;
     heard = false;
-    for (DriveAxis& axis : axes) axis.start();
+    for (DriveAxis& axis : axes) axis.start(cold, time);
     forEach(&DriveCore::start, cold, time);
     gate.foreign = own_bus.foreign() || (cold ? store.silent() : gate.foreign);
     for (DriveAxis& axis : axes) axis.encoder.start(cold);
@@ -190,11 +188,13 @@ struct Drive::Impl : Device::Application, DriveCore::Reports {
     }
     for (DriveAxis& axis : axes) {
       axis.core.advance(now);
-      axis.encoder.look();
+      axis.look(now);
     }
     showMakerState(definition->own.states, axes[0].core.statusword(),
                    axes[0].core.motion().powered(), dictionary);
-    if (effects.watches()) effects.look(powered());
+    if (effects.watches() && effects.look(powered())) {
+      for (DriveAxis& axis : axes) axis.obey();
+    }
     if (now >= own_bus.due()) countOwnBus();
   }
 
@@ -277,7 +277,10 @@ void Drive::powerOff(Time now) {
 void Drive::receive(const can::Frame& frame, Time now) {
   impl_->bringTo(now);
   impl_->heard = impl_->heard || !impl_->gate.shut();
-  if (!impl_->gate.shut()) impl_->device.receive(frame, now);
+  if (!impl_->gate.shut()) {
+    impl_->axes[0].monitors.heard(frame);
+    impl_->device.receive(frame, now);
+  }
   impl_->flushChanges();
 }
 
@@ -357,8 +360,7 @@ void Drive::setInput(unsigned bit, bool active, Time now, unsigned axis) {
   DriveAxis& changed = impl_->axes.at(axis);
   changed.core.obstacle().setInput(bit, active);
   changed.core.onObstacle();
-  obey(changed.terminals, changed.core, impl_->dictionary,
-       impl_->definition->fault("terminal_setup"));
+  changed.obey();
   impl_->flushChanges();
 }
 
@@ -370,18 +372,8 @@ void Drive::setPulseWidth(double duty, Time now, unsigned axis) {
 
 DriveTruth Drive::truth(Time now, unsigned axis) {
   impl_->bringTo(now);
-  DriveAxis& asked = impl_->axes.at(axis);
-  const DriveMotion& motion = asked.core.motion();
-  DriveTruth truth;
-  truth.position_turns = motion.motor().truePosition();
-  truth.velocity_turns = motion.motor().trueVelocity();
-  truth.power_stage_on = motion.powered();
-  truth.moving = std::fabs(truth.velocity_turns) > 1e-3;
-  truth.statusword = asked.core.statusword();
-  truth.mode = static_cast<int>(asked.core.mode());
+  DriveTruth truth = impl_->axes.at(axis).truth();
   truth.nmt = impl_->device.nmtState();
-  truth.outputs = asked.core.outputs();
-  truth.bad_floats_received = asked.bad_floats;
   return truth;
 }
 

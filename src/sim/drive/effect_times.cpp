@@ -21,9 +21,10 @@ void EffectTimes::writing(ObjectId id) {
   waits_ = true;
 }
 
-void EffectTimes::look(bool powered) {
-  if (!powered) release(false);
+bool EffectTimes::look(bool powered) {
+  const bool released = !powered && release(false);
   if (powered != deaf_) hear(!powered);
+  return released;
 }
 
 void EffectTimes::powerOff() {
@@ -31,15 +32,19 @@ void EffectTimes::powerOff() {
   hear(true);
 }
 
-void EffectTimes::release(bool all) {
-  if (!waits_) return;
+bool EffectTimes::release(bool all) {
+  if (!waits_) return false;
+  bool released = false;
   waits_ = false;
   for (const auto& [id, effect] : effects_) {
     Entry* entry = dictionary_.find(id);
     if (entry == nullptr) continue;
-    if (all || effect == Effect::stop) entry->waits = false;
+    const bool counts = entry->waits && (all || effect == Effect::stop);
+    if (counts) entry->waits = false;
+    released = released || counts;
     waits_ = waits_ || entry->waits;
   }
+  return released;
 }
 
 void EffectTimes::hear(bool any) {

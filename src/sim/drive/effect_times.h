@@ -16,12 +16,12 @@ class EffectTimes {
   void writing(ObjectId id);
   /// look() may have something to do.
   bool watches() const { return waits_ || ignores_; }
-  /// @param powered a motor of the drive has power.
-  void look(bool powered);
+  /// @param powered a motor of the drive has power. @return numbers count from now on that did not
+  bool look(bool powered);
   void powerOff();
 
  private:
-  void release(bool all);
+  bool release(bool all);
   void hear(bool any);
 
   const Effects& effects_;

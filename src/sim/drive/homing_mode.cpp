@@ -29,6 +29,11 @@ enum OffsetMode : std::int64_t {
 
 constexpr char kIllogical[] = "homing_logic";
 
+bool seeksStop(const HomingRoute& route) {
+  return std::any_of(route.legs.begin(), route.legs.end(),
+                     [](const HomingLeg& leg) { return leg.until == HomingEvent::hard_stop; });
+}
+
 }  // namespace
 
 void HomingMode::begin() {
@@ -74,6 +79,7 @@ void HomingMode::start() {
   terminals_wrong_ = !terminalsAreRight(*route);
   if (terminals_wrong_) return;
   searched_s_ = pushed_s_ = 0.0;
+  seeks_stop_ = seeksStop(*route);
   sequence_.start(*route, axis_.switches, axis_.motor.position());
   if (sequence_.phase() == Phase::found) finish();
 }
@@ -105,6 +111,24 @@ void HomingMode::finish() {
   }
 }
 
+/// What home reads by 607Ch, turns.
+double HomingMode::homeReads() const {
+  const double offset = axis_.values.get(Role::home_offset, 0.0);
+  return axis_.definition.homing.home_offset_is_zero_shift ? -offset : offset;
+}
+
+void HomingMode::offsetWritten() {
+  offset_wrong_ = axis_.limits.offsetOutside();
+  if (!axis_.definition.homing.offset_counts_at_once || !offset_) return;
+  axis_.frame -= homeReads() - *offset_;
+  offset_ = homeReads();
+}
+
+double HomingMode::mostTorque() const {
+  const bool bounds = axis_.definition.homing.stop_torque_bounds && seeks_stop_ && searching();
+  return bounds ? axis_.values.get(Role::homing_stop_torque, kUnlimited) : kUnlimited;
+}
+
 /// The search is over: positions count from the home that was found.
 void HomingMode::arrive() {
   const double offset = axis_.values.get(Role::home_offset, 0.0);
@@ -119,9 +143,10 @@ void HomingMode::arrive() {
       axis_.frame = goal_ - offset;
       break;
     default:
-      axis_.frame =
-          sequence_.home() - (axis_.definition.homing.home_offset_is_zero_shift ? -offset : offset);
+      axis_.frame = sequence_.home() - homeReads();
+      offset_ = homeReads();
   }
+  offset_wrong_ = axis_.limits.offsetOutside();
   attained_ = true;
   axis_.limits.setHomed(true);
 }
@@ -207,8 +232,9 @@ const char* HomingMode::takeFault() {
                       : terminals_wrong_ ? "terminal_setup"
                       : late_            ? "homing_time"
                       : tells_failure_   ? "homing_failed"
+                      : offset_wrong_    ? "home_offset"
                                          : nullptr;
-  illogical_ = terminals_wrong_ = late_ = tells_failure_ = false;
+  illogical_ = terminals_wrong_ = late_ = tells_failure_ = offset_wrong_ = false;
   return fault;
 }
 

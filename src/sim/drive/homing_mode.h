@@ -19,6 +19,16 @@ class HomingMode {
   /// A controlword in this mode.
   void control(bool bit_4, bool rising);
   void start();  ///< the search begins, whoever asks
+  /// It begins where an object does that instead of bit 4, if this is the mode.
+  void startByObject() {
+    if (axis_.inMode(ModeBehaviour::homing)) start();
+  }
+  /// 607Ch was written.
+  void offsetWritten();
+  /// What was homed before says nothing of a later 607Ch.
+  void forgetOffset() { offset_.reset(); }
+  /// Nothing pushes harder in this mode now, rated torques.
+  double mostTorque() const;
   /// One kDriveStep; the rotor was at `from`, true turns, before.
   void step(double from);
 
@@ -42,6 +52,7 @@ class HomingMode {
   bool movesOn() const;
   void arrive();
   void giveUp();
+  double homeReads() const;
   bool illogical(const HomingRoute* route) const;
   void goToGoal();
   void search();
@@ -53,7 +64,10 @@ class HomingMode {
   bool returning_ = false;  ///< to goal_, which is home or lies the offset beyond it
   double goal_ = 0.0;       ///< true turns
   bool terminals_wrong_ = false, late_ = false, tells_failure_ = false, illogical_ = false;
-  unsigned readings_ = 0;  ///< of positions, while it homes by an object
+  bool seeks_stop_ = false;  ///< somewhere on its way
+  bool offset_wrong_ = false;
+  std::optional<double> offset_;  ///< turns, that of a home found since the power came
+  unsigned readings_ = 0;         ///< of positions, while it homes by an object
   double searched_s_ = 0.0;
   double pushed_s_ = 0.0;  ///< against a hard stop
 };

@@ -20,8 +20,17 @@ unsigned AxisSwitches::functions(double turns) const {
          (home(turns) ? 4U : 0U);
 }
 
+unsigned AxisSwitches::bits(double turns) const {
+  unsigned bits = 0;
+  for (const Terminal& terminal : terminals_) {
+    if (terminal.bit && active(terminal.input, turns)) bits |= 1U << *terminal.bit;
+  }
+  return bits;
+}
+
 unsigned AxisSwitches::levels(double turns) const {
   if (all_) return functions(turns);
+  if (by_bits_) return functions(turns) | bits(turns);
   unsigned bits = 0;
   for (std::size_t i = 0; i < terminals_.size(); ++i) {
     const Terminal& terminal = terminals_[i];

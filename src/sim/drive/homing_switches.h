@@ -20,7 +20,8 @@ class AxisSwitches {
   struct Terminal {
     HomingInput input = HomingInput::none;
     bool active_low = false;
-    bool reversed = false;  ///< the drive takes it for active where it is not
+    bool reversed = false;        ///< the drive takes it for active where it is not
+    std::optional<unsigned> bit;  ///< of levels(), which is 1 where its function is active
   };
   /// From now on a switch that is at none of these terminals does not exist.
   void connect(std::vector<Terminal> terminals) {
@@ -30,6 +31,8 @@ class AxisSwitches {
   /// levels() are those of negative limit, positive limit and home switch as the drive takes them,
   /// and of the terminals from this bit on.
   void showFunctions(unsigned first_bit) { first_bit_ = first_bit; }
+  /// levels() are those, and the bits of the terminals.
+  void showBits() { by_bits_ = true; }
   /// The electrical levels of the terminals, a bit each; without connect() the bits are those of
   /// negative limit, positive limit and home switch.
   unsigned levels(double turns) const;
@@ -58,11 +61,13 @@ class AxisSwitches {
   double place(double turns) const { return mirrored_ ? -turns : turns; }
   bool seen(HomingInput input, bool active) const;
   unsigned functions(double turns) const;
+  unsigned bits(double turns) const;
 
   const AxisMechanics* mechanics_;
   std::vector<Terminal> terminals_;
   bool all_ = true;  ///< every switch is connected
   bool mirrored_ = false;
+  bool by_bits_ = false;
   std::optional<unsigned> first_bit_;
 };
 

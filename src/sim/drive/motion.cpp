@@ -25,10 +25,6 @@ DriveMotion::DriveMotion(const DriveDefinition& definition, const MotorParameter
   axis_.demand.takeOver(axis_.motor, time_constant_);
 }
 
-bool DriveMotion::inMode(ModeBehaviour behaviour) const {
-  return axis_.mode != nullptr && axis_.mode->behaviour == behaviour;
-}
-
 bool DriveMotion::positionControlled() const {
   if (stop_ || held_ || axis_.mode == nullptr || axis_.dropsTargets()) return true;
   switch (axis_.mode->behaviour) {
@@ -43,10 +39,13 @@ bool DriveMotion::positionControlled() const {
   }
 }
 
-bool DriveMotion::fadesInStops() const { return axis_.mode != nullptr && axis_.mode->stops_fade; }
+bool DriveMotion::fadesInStops() const {
+  return fades_ && axis_.mode != nullptr && axis_.mode->stops_fade != StopsFade::never;
+}
 
 bool DriveMotion::standing() const {
-  return stop_ && fadesInStops() ? axis_.demand.torque == 0.0 : axis_.standing();
+  const bool ends = stop_ && fadesInStops() && axis_.mode->stops_fade == StopsFade::always;
+  return ends ? axis_.demand.torque == 0.0 : axis_.standing();
 }
 
 bool DriveMotion::modeBit() const { return (controlword_ & kModeBit) != 0; }
@@ -76,11 +75,14 @@ void DriveMotion::setMode(const ModeDefinition* mode) {
   supervision_.newMode();
 }
 
-void DriveMotion::stop(Ramp ramp) {
+void DriveMotion::stop(Ramp ramp, bool commanded) {
   // From where the rotor really is, whatever was demanded of it.
   const double torque = axis_.demand.torque;
   axis_.demand.takeOver(axis_.motor, time_constant_);
-  if (fadesInStops()) axis_.demand.torque = torque;
+  const StopsFade fade = axis_.mode == nullptr ? StopsFade::never : axis_.mode->stops_fade;
+  const bool ramped = commanded && (ramp == Ramp::slow_down || ramp == Ramp::quick_stop);
+  fades_ = fade == StopsFade::always || (fade == StopsFade::ramps && ramped);
+  if (fades_) axis_.demand.torque = torque;
   stop_ = ramp;
   set_points_.stopped();
 }
@@ -105,8 +107,8 @@ void DriveMotion::controlBits(std::uint16_t controlword, std::uint16_t previous)
   const bool bit_4 = modeBit();
   const bool rising = bit_4 && (previous & kModeBit) == 0;
   if (set_points_.control(controlword, previous)) begun();
-  if (inMode(ModeBehaviour::homing)) homing_.control(bit_4, rising);
-  started_ = started_ || (inMode(ModeBehaviour::homing) && rising);
+  if (axis_.inMode(ModeBehaviour::homing)) homing_.control(bit_4, rising);
+  started_ = started_ || (axis_.inMode(ModeBehaviour::homing) && rising);
   halt();
 }
 
@@ -127,15 +129,11 @@ void DriveMotion::halt() {
   if (wanted && !stop_) {
     const OptionTable& table = axis_.definition.halt_option;
     const auto option = table.options.find(axis_.values.raw(Role::halt_option, table.fallback));
-    stop(option == table.options.end() ? Ramp::slow_down : option->second.ramp);
+    stop(option == table.options.end() ? Ramp::slow_down : option->second.ramp, true);
     halted_ = true;
   } else if (!wanted && halted_) {
     release();
   }
-}
-
-void DriveMotion::homeByObject() {
-  if (inMode(ModeBehaviour::homing)) homing_.start();
 }
 
 void DriveMotion::cyclicTarget(double seconds, double into) {
@@ -150,6 +148,7 @@ void DriveMotion::limitTorque() {
   if (axis_.mode != nullptr && axis_.mode->torque) {
     torque = std::min(torque, std::fabs(axis_.values.get(*axis_.mode->torque, kUnlimited)));
   }
+  if (axis_.inMode(ModeBehaviour::homing)) torque = std::min(torque, homing_.mostTorque());
   const auto limit = [&](Role role) {
     return std::min(torque, std::fabs(axis_.values.get(role, kUnlimited)));
   };
@@ -190,8 +189,11 @@ void DriveMotion::stepRotor(double from) {
   axis_.limits.releaseSwitch();
   if (stop_ && fadesInStops()) {
     stepFading(axis_);
+    const bool over = demand.torque == 0.0 && axis_.standing();
+    if (over && axis_.mode->stops_fade == StopsFade::ramps) fades_ = false;  // held from now on
+    if (!fades_) demand.begin();
   } else if (stop_) {
-    const bool locked = ramps_locked_ && !halted_ && inMode(ModeBehaviour::velocity);
+    const bool locked = ramps_locked_ && !halted_ && axis_.inMode(ModeBehaviour::velocity);
     locked ? axis_.keepSpeed() : axis_.slowDown(*stop_);
     axis_.motor.followPosition(demand.position);
   } else if (held_ || axis_.mode == nullptr || axis_.dropsTargets()) {

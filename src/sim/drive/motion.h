@@ -45,7 +45,8 @@ class DriveMotion {
   const ModeDefinition* mode() const { return axis_.mode; }
 
   /// Slows down whatever the mode wants, then holds the position, until release().
-  void stop(Ramp ramp);
+  /// @param commanded by a halt or a quick stop
+  void stop(Ramp ramp, bool commanded);
   /// The mode has its say again.
   void release();
   bool stopping() const { return stop_.has_value(); }
@@ -67,12 +68,14 @@ class DriveMotion {
   bool standing() const;
   /// Bits 8 and 10 to 15 for the present mode; only meaningful while operation is enabled.
   std::uint16_t statusBits() const;
-  /// Begins to home where an object does that instead of bit 4.
-  void homeByObject();
+  HomingMode& homing() { return homing_; }
   bool followingErrorExceeded() const { return supervision_.followingErrorExceeded(); }
   /// The drive has found its home by itself, since its position was lost.
   bool homed() const { return axis_.limits.homed(); }
-  void setHomed(bool homed) { axis_.limits.setHomed(homed); }
+  void setHomed(bool homed) {
+    homing_.forgetOffset();
+    axis_.limits.setHomed(homed);
+  }
   /// The drive halts the motor by itself, as by controlword bit 8, until it lets it go on.
   void pause(bool on);
   /// Ramps on the way out of operation hold their speed in velocity mode.
@@ -94,7 +97,6 @@ class DriveMotion {
   const Motor& motor() const { return axis_.motor; }
 
  private:
-  bool inMode(ModeBehaviour behaviour) const;
   bool positionControlled() const;
   bool modeBit() const;
   bool fadesInStops() const;
@@ -114,6 +116,7 @@ class DriveMotion {
   Parts parts_{axis_};
   double time_constant_;  ///< of the position loop, s
   bool powered_ = false;
+  bool fades_ = false;  ///< the present stop lets the torque go
   bool held_ = false;
   bool halted_ = false, paused_ = false, ramps_locked_ = false;
   bool started_ = false;  ///< a set-point or a search has begun in this mode, since it began

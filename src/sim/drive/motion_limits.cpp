@@ -36,6 +36,7 @@ double MotionLimits::rampOf(Ramp ramp, const ModeDefinition* mode) const {
       return values_.get(Role::quick_stop_deceleration, kUnlimited);
     case Ramp::limit:
     case Ramp::coast:
+    case Ramp::dynamic_brake:
       break;
   }
   return most_deceleration_;
@@ -94,6 +95,13 @@ std::optional<MotionLimits::Span> MotionLimits::positions() const {
   const double most = all - all / std::ldexp(1.0, 31);
   if (span.low >= span.high || (all > 0.0 && span.high - span.low >= most)) return std::nullopt;
   return span;
+}
+
+bool MotionLimits::offsetOutside() const {
+  if (!values_.has(Role::position_minimum)) return false;
+  const Span span = software();
+  const double offset = values_.get(Role::home_offset, 0.0);
+  return offset < span.low || offset > span.high;
 }
 
 double MotionLimits::clamped(double turns) {

@@ -42,6 +42,8 @@ class MotionLimits {
   };
   /// 607Dh in the drive's own turns; none where it limits nothing: both equal, or at their widest.
   std::optional<Span> positions() const;
+  /// 607Ch lies outside 607Dh, whether that counts or not.
+  bool offsetOutside() const;
   /// A target in the drive's own turns, within 607Dh.
   double clamped(double turns);
   /// The speed that still comes to rest at 607Dh with the deceleration `braking`. `turns` is where

@@ -157,8 +157,9 @@ void Motor::coast() {
   last_demand_.reset();
   torque_ = 0.0;
   if (velocity_ == 0.0) return;
-  const double deceleration = parameters_.friction * parameters_.rated_acceleration +
-                              parameters_.viscous_friction * std::fabs(velocity_);
+  const double torque = parameters_.friction + (shorted_ ? parameters_.dynamic_brake : 0.0);
+  const double deceleration =
+      torque * parameters_.rated_acceleration + parameters_.viscous_friction * std::fabs(velocity_);
   const double loss = deceleration * kDriveStepS;
   velocity_ =
       blocked_ || std::fabs(velocity_) <= loss ? 0.0 : velocity_ - std::copysign(loss, velocity_);

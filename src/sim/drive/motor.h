@@ -21,6 +21,7 @@ struct MotorParameters {
   double max_speed = 100.0;               ///< turns/s that the position loop may ask for
   double friction = 0.02;                 ///< Coulomb friction, in rated torques
   double viscous_friction = 0.5;          ///< 1/s, deceleration per speed when coasting
+  double dynamic_brake = 0.0;             ///< of shorted windings, in rated torques; 0: none
 };
 
 /// Rotor, position loop and velocity loop, stepped by kDriveStep. The position loop is
@@ -40,6 +41,8 @@ class Motor {
   void block(bool blocked) { blocked_ = blocked; }
   /// Its phases are swapped: it pushes against what its loops ask for, and runs away from a demand.
   void reverse(bool reversed) { reversed_ = reversed; }
+  /// Its windings are shorted while it has no power.
+  void shortWindings(bool shorted) { shorted_ = shorted; }
   /// The drive calls the other direction forward: what it has counted changes its sign.
   void mirror(bool mirrored);
   bool mirrored() const { return mirrored_; }
@@ -82,7 +85,7 @@ class Motor {
   double velocity_ = 0.0;
   double torque_ = 0.0;
   std::optional<double> last_demand_;  ///< of the position loop, to know how fast it moves
-  bool blocked_ = false, reversed_ = false, mirrored_ = false;
+  bool blocked_ = false, reversed_ = false, mirrored_ = false, shorted_ = false;
 };
 
 }  // namespace cia402::sim

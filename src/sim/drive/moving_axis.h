@@ -20,6 +20,9 @@ class MovingAxis {
   MovingAxis(const MovingAxis&) = delete;
   MovingAxis& operator=(const MovingAxis&) = delete;
 
+  bool inMode(ModeBehaviour behaviour) const {
+    return mode != nullptr && mode->behaviour == behaviour;
+  }
   /// The number of a target, as 607Eh lets it count: turns, turns/s or rated torques.
   double commanded(Role target) const;
   /// True turns of what the drive reads as `turns`, within 607Dh. Numbers that wrap around mean the

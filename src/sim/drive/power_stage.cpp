@@ -11,6 +11,9 @@ constexpr Duration kQuickStopFlash = std::chrono::milliseconds(2);
 /// From when a brake closes on a motor that turned until the power goes.
 constexpr Duration kPowerWhileBraking = std::chrono::milliseconds(50);
 
+/// The power goes at once.
+bool letsGo(Ramp ramp) { return ramp == Ramp::coast || ramp == Ramp::dynamic_brake; }
+
 }  // namespace
 
 PowerStage::PowerStage(const DriveDefinition& definition, const AxisMechanics& mechanics,
@@ -78,11 +81,11 @@ bool PowerStage::atCloseSpeed() const {
   return std::fabs(motion_.motor().velocity()) < values_.get(Role::brake_close_speed, 0.0);
 }
 
-void PowerStage::beginStop(Ramp ramp, Time now) {
+void PowerStage::beginStop(Ramp ramp, Time now, bool quick) {
   stop_since_ = now;
   power_ends_at_ = kNever;
   if (atCloseSpeed()) power_ends_at_ = now + fromSeconds(values_.get(Role::brake_power_time, 0.0));
-  motion_.stop(ramp);
+  motion_.stop(ramp, quick);
 }
 
 /// The brake has closed, and the power may go, whether the motor stands or not.
@@ -122,9 +125,16 @@ void PowerStage::enter(PdsState state, Time now) {
     }
   } else if (!enabled() && was_enabled) {
     motion_.powerStage(false);
+    motion_.motor().shortWindings(false);
   }
   if (state != PdsState::switched_on) enabled_at_ = kNever;
   modes_.show(state_);
+}
+
+/// As enter(), into a state without power.
+void PowerStage::letGo(PdsState state, Ramp ramp, Time now) {
+  enter(state, now);
+  motion_.motor().shortWindings(ramp == Ramp::dynamic_brake);
 }
 
 void PowerStage::execute(const PdsTransition& transition, Time now) {
@@ -171,17 +181,17 @@ StopOption PowerStage::option(const OptionTable& table, Role role) const {
 void PowerStage::leaveEnabled(const PdsTransition& transition, const OptionTable& table, Role role,
                               Time now) {
   const StopOption chosen = option(table, role);
-  if (chosen.ramp == Ramp::coast) return enter(transition.to, now);
-  if (!after_stop_) beginStop(chosen.ramp, now);
+  if (letsGo(chosen.ramp)) return letGo(transition.to, chosen.ramp, now);
+  if (!after_stop_) beginStop(chosen.ramp, now, false);
   after_stop_ = transition;
 }
 
 void PowerStage::quickStop(StopOption chosen, Time now) {
-  if (chosen.ramp == Ramp::coast) return enter(PdsState::switch_on_disabled, now);
+  if (letsGo(chosen.ramp)) return letGo(PdsState::switch_on_disabled, chosen.ramp, now);
   hold_after_quick_stop_ = chosen.hold;
   quick_stop_since_ = now;
   enter(PdsState::quick_stop_active, now);
-  beginStop(chosen.ramp, now);
+  beginStop(chosen.ramp, now, true);
 }
 
 void PowerStage::quickStop(Time now) {
@@ -193,10 +203,11 @@ void PowerStage::react(const FaultDefinition& fault, Time now) {
   const Ramp ramp = fault.reaction
                         ? *fault.reaction
                         : option(definition_.fault_reaction, Role::fault_reaction_option).ramp;
-  if (reacting && ramp != Ramp::coast) return;
-  if (!motion_.powered() || ramp == Ramp::coast) return enter(PdsState::fault, now);
+  if (reacting && !letsGo(ramp)) return;
+  if (!motion_.powered()) return enter(PdsState::fault, now);
+  if (letsGo(ramp)) return letGo(PdsState::fault, ramp, now);
   enter(PdsState::fault_reaction_active, now);
-  motion_.stop(ramp);
+  motion_.stop(ramp, false);
 }
 
 }  // namespace cia402::sim

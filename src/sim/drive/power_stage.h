@@ -66,7 +66,8 @@ class PowerStage {
   void leaveEnabled(const PdsTransition& transition, const OptionTable& table, Role role, Time now);
   bool closesBrake() const;
   bool atCloseSpeed() const;
-  void beginStop(Ramp ramp, Time now);
+  void letGo(PdsState state, Ramp ramp, Time now);
+  void beginStop(Ramp ramp, Time now, bool quick);
   bool brakeHolds(Time due);
 
   const DriveDefinition& definition_;

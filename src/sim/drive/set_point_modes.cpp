@@ -21,6 +21,13 @@ double streamedSlope(const MovingAxis& axis, double target) {
   return slope > 0.0 ? slope : kUnlimited;
 }
 
+/// The most that a torque may lead to.
+double speedByTorque(const MovingAxis& axis) {
+  const double most = axis.limits.maxSpeed();
+  if (!axis.mode->velocity) return most;
+  return std::min(most, std::fabs(axis.values.get(*axis.mode->velocity, 0.0)));
+}
+
 }  // namespace
 
 void stepVelocity(MovingAxis& axis, bool ramped) {
@@ -76,12 +83,8 @@ void stepTorque(MovingAxis& axis, bool ramped) {
       ramped ? axis.values.get(Role::torque_slope, kUnlimited) : streamedSlope(axis, target);
   const double change = slope * kDriveStepS;
   demand.torque = std::clamp(target, demand.torque - change, demand.torque + change);
-  double speed = axis.limits.maxSpeed();
-  if (axis.mode->velocity) {
-    speed = std::min(speed, std::fabs(axis.values.get(*axis.mode->velocity, 0.0)));
-  }
   const bool stopped = demand.torque != 0.0 && axis.blocked(demand.torque);
-  axis.motor.applyTorque(stopped ? 0.0 : demand.torque, speed);
+  axis.motor.applyTorque(stopped ? 0.0 : demand.torque, speedByTorque(axis));
   demand.position = axis.motor.position();
   demand.velocity = axis.motor.velocity();
 }
@@ -90,7 +93,7 @@ void stepFading(MovingAxis& axis) {
   Demand& demand = axis.demand;
   const double change = axis.values.get(Role::torque_slope, kUnlimited) * kDriveStepS;
   demand.torque = std::clamp(0.0, demand.torque - change, demand.torque + change);
-  axis.motor.applyTorque(demand.torque, axis.limits.maxSpeed());
+  axis.motor.applyTorque(demand.torque, speedByTorque(axis));
   demand.position = axis.motor.position();
   demand.velocity = axis.motor.velocity();
 }

@@ -32,7 +32,7 @@ HomingInput switchOf(InputFunction function) {
 
 std::uint64_t Terminals::number(fieldbus::ObjectId id) const {
   const Entry* entry = dictionary_.find(id);
-  return entry == nullptr ? 0 : entry->number;
+  return entry == nullptr ? 0 : entry->acting();
 }
 
 bool Terminals::holds(fieldbus::ObjectId id) const {
@@ -65,6 +65,12 @@ bool Terminals::twice() const {
   return std::adjacent_find(numbers.begin(), numbers.end()) != numbers.end();
 }
 
+/// Where an input stands in digital_inputs, if it has a place of its own there.
+std::optional<unsigned> Terminals::bitOf(std::size_t input) const {
+  if (input >= definition_.bits.size()) return std::nullopt;
+  return definition_.bits[input];
+}
+
 void Terminals::connect(AxisSwitches& switches) const {
   std::vector<AxisSwitches::Terminal> terminals;
   const bool by_bits = definition_.inversion.has_value();
@@ -72,11 +78,14 @@ void Terminals::connect(AxisSwitches& switches) const {
       by_bits ? number(*definition_.inversion) ^ definition_.normally_closed : 0;
   for (const auto& input : definition_.with_terminal) {
     const HomingInput at = isInput(input) ? switchOf(functionOf(input)) : HomingInput::none;
-    const bool low = !by_bits && number(input.logic) == kLogicLow;
-    const bool reversed = ((turned >> terminals.size()) & 1U) != 0;
-    terminals.push_back({at, low, reversed});
+    const std::optional<unsigned> bit = bitOf(terminals.size());
+    const bool low = !by_bits && !bit && number(input.logic) == kLogicLow;
+    const bool high = !definition_.bits.empty() && number(input.logic) == kLogicHigh;
+    const bool reversed = ((turned >> terminals.size()) & 1U) != 0 || high;
+    terminals.push_back({at, low, reversed, bit});
   }
   if (definition_.empty()) return;
+  if (!definition_.bits.empty()) switches.showBits();
   switches.connect(std::move(terminals));
   if (by_bits) switches.showFunctions(definition_.first_bit);
 }
@@ -98,9 +107,10 @@ void Terminals::start(DriveCore& core) {
 bool Terminals::active(InputFunction function) const {
   for (std::size_t i = 0; i < definition_.with_terminal.size(); ++i) {
     const auto& input = definition_.with_terminal[i];
-    const bool high = ((inputs_ >> i) & 1U) != 0;
+    const bool high = ((inputs_ >> bitOf(i).value_or(i)) & 1U) != 0;
     const std::uint64_t logic = number(input.logic);
-    const bool on = (logic == kLogicLow && !high) || (logic == kLogicHigh && high);
+    const bool on =
+        bitOf(i) ? high : (logic == kLogicLow && !high) || (logic == kLogicHigh && high);
     if (on && isInput(input) && functionOf(input) == function) return true;
   }
   for (std::size_t i = 0; i < definition_.without.size(); ++i) {
@@ -115,9 +125,11 @@ bool Terminals::active(InputFunction function) const {
 void Terminals::addEdges(std::uint32_t inputs, Change& change) const {
   for (std::size_t i = 0; i < definition_.with_terminal.size(); ++i) {
     const auto& input = definition_.with_terminal[i];
-    const bool was = ((inputs_ >> i) & 1U) != 0, is = ((inputs >> i) & 1U) != 0;
+    const std::size_t bit = bitOf(i).value_or(i);
+    const bool was = ((inputs_ >> bit) & 1U) != 0, is = ((inputs >> bit) & 1U) != 0;
     const std::uint64_t logic = number(input.logic);
-    const bool rises = is && !was && (logic == kTerminalRising || logic == kTerminalBoth);
+    const bool by_edge = logic == kTerminalRising || logic == kTerminalBoth;
+    const bool rises = is && !was && (by_edge || bitOf(i));
     const bool falls = was && !is && (logic == kTerminalFalling || logic == kTerminalBoth);
     const InputFunction function = isInput(input) ? functionOf(input) : InputFunction::none;
     if ((rises || falls) && function != InputFunction::none) change.edges.push_back(function);
@@ -158,6 +170,7 @@ void obey(Terminals& terminals, DriveCore& core, ObjectDictionary& dictionary,
     if (function == InputFunction::set_home) core.onWrite(Role::save_zero);
     if (function == InputFunction::fault_reset) core.resetFault();
     if (function == InputFunction::step) maker.trigger();
+    if (function == InputFunction::emergency_stop) core.onWrite(Role::emergency_stop);
     Entry* history = dictionary.find(kErrorsKept);
     if (function == InputFunction::clear_history && history != nullptr) history->number = 0;
   }

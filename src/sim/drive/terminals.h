@@ -1,7 +1,9 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "sim/definition/terminals.h"
@@ -37,6 +39,7 @@ class Terminals {
 
  private:
   std::uint64_t number(fieldbus::ObjectId id) const;
+  std::optional<unsigned> bitOf(std::size_t input) const;
   InputFunction functionOf(const TerminalsDefinition::Input& input) const;
   bool isInput(const TerminalsDefinition::Input& input) const;
   bool twice() const;
