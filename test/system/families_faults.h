@@ -124,6 +124,32 @@ inline std::vector<FamilyAlarm> dm5Faults() {
           {"output_broken", "0xFF55", "motor wire broken (Er.085)"}};
 }
 
+/// The SV660C manual: codes that it names [L1396-15534], and what it speaks of without a code.
+inline std::vector<FamilyAlarm> sv660cFaults() {
+  const char* const own = "an error of the maker's own";
+  return {{"overcurrent", "0x2310", "continuous over current"},               // L2979
+          {"overvoltage", "0x3210", "DC link over voltage"},                  // L3005
+          {"undervoltage", "0x3220", "DC link under voltage"},                // L3037
+          {"phase_loss", "0x3130", "E420 phase of the mains missing"},        // L7850
+          {"overspeed", "0x7310", "E500 over speed"},                         // L7924
+          {"motor_overload", "0x3230", "E620 motor overload"},                // L7904
+          {"locked_rotor", "0x7121", "E630 motor blocked"},                   // L8096
+          {"overtemperature", "0x4310", "drive over temperature"},            // L8146
+          {"brake_chopper", "0x7112", "brake chopper over temperature"},      // L8207
+          {"encoder", "0x7305", "encoder"},                                   // L8231
+          {"encoder_overtemperature", "0xFF00", own},                         // L8221
+          {"turns_overflow", "0xFF00", own},                                  // L8126
+          {"vibration", "0xFF00", own},                                       // L7775-7789
+          {"following_error", "0x8611", "EB00 following error"},              // L15281
+          {"position_command", "0xFF00", "EB01 position commands"},           // L7941
+          {"home_offset", "0xFF00", "EE09 home offset beyond the position"},  // L15534
+          {"sync_error", "0x8700", "SYNC"},                                   // L9661
+          {"ip_increment", "0xFF00", own},                                    // L9649
+          {"runaway", "0xFF00", "E234 runaway"},                              // L7957-7983
+          {"product_mismatch", "0xFF00", "E120 drive and motor do not fit", Ends::by_power_cycle},
+          {"parameter", "0x5530", "parameter memory", Ends::by_power_cycle}};  // L9149
+}
+
 /// The simulated drive of a family, from its file.
 inline std::shared_ptr<const sim::DriveDefinition> familyDefinition(const std::string& family) {
   const auto definition =

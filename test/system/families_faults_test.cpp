@@ -185,7 +185,8 @@ INSTANTIATE_TEST_SUITE_P(
     All, FamilyFaults,
     testing::Values(FamilyAlarms{{kNimotionStepper, "4000", "csp"}, nimotionFaults()},
                     FamilyAlarms{{kId286Cnfa, "10000", "pp"}, id286Faults()},
-                    FamilyAlarms{{kMegmeetDm5, "8388608", "csp"}, dm5Faults()}),
+                    FamilyAlarms{{kMegmeetDm5, "8388608", "csp"}, dm5Faults()},
+                    FamilyAlarms{{kSv660c, "100000", "ip"}, sv660cFaults()}),
     [](const auto& tested) { return std::string(tested.param.tested.family); });
 
 /// A blocked rotor, in each mode of positions.

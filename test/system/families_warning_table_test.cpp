@@ -83,6 +83,13 @@ INSTANTIATE_TEST_SUITE_P(
                         {"positive_position_limit", "0x0800", "positive limit", false},
                         {"negative_position_limit", "0x1000", "negative limit", false},
                         {"homing_failed", "0x2000", "homing failed", false}}},
+        // L1396-1400, L8048, L8189, L8205, L7853
+        FamilyCautions{{kSv660c, "100000", "ip"},
+                       {{"homing_time", "0xFF00", "E601 homing took too long", false},
+                        {"overload_warning", "0x3230", "E909 motor overload ahead", false},
+                        {"forward_limit", "0x8612", "E950 forward position limit", false},
+                        {"reverse_limit", "0x8612", "E952 reverse position limit", false},
+                        {"phase_loss_warning", "0x3130", "E990 phase of the mains", false}}},
         // L3797-3815
         FamilyCautions{
             {kMegmeetDm5, "8388608", "csp"},
