@@ -52,9 +52,9 @@ TEST(DriveHoming, TellsWhatItWaitsFor) {
       (std::vector<std::string>{
           "starting | ", "writing parameters | the drive to take homing_method (6098:00)",
           "writing parameters | the drive to take homing_search_velocity (6099:01)",
-          "writing parameters | the drive to take home_offset (607C:00)",
           "setting the target to the actual value | its RPDO to be sent",
           "switching the mode | 6061:00 to show 6 (homing)",
+          "writing parameters | the drive to take home_offset (607C:00)",
           "preparing the start | the result of an earlier homing to be cleared",
           "searching home | homing attained (statusword bit 12), method 17 (negative limit switch)",
           "home found | standstill",

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "drive/procedures/home_offset.h"
 #include "drive/procedures/limits.h"
 #include "drive/profile/named_write.h"
 #include "drive/sentence.h"
@@ -12,23 +13,11 @@
 
 namespace cia402::drive {
 namespace {
+constexpr char kOffset[] = "homing.offset";  // NamedWrite::from
 /// How long a drive may show the result of an earlier homing before bit 4 rises.
 constexpr Duration kClearTime{std::chrono::milliseconds(500)};
-/// What a home that is found may be behind, in this time: until the drive brakes.
-constexpr double kBrakesAfter = 0.1;  // s
 /// After the edge the drive gets this long to drop an old result, or to stay "interrupted".
 constexpr Duration kReaction{std::chrono::milliseconds(500)};
-
-/// The axis has written itself what the drive is to make of home and of its offset.
-bool meansItsOwn(const AxisCore& axis) {
-  const DriveProfile& profile = axis.profile();
-  const auto& writes = axis.config().writes;
-  return std::any_of(writes.begin(), writes.end(), [&](const NamedWrite& write) {
-    const ObjectSpec* object = findObject(profile, write.object);
-    return object != nullptr && !(object->id == profile.own({0x607C, 0})) &&
-           profile.coordinateMark(object->id) == CoordinateMark::home;
-  });
-}
 
 }  // namespace
 
@@ -38,7 +27,8 @@ DriveHoming::DriveHoming(AxisCore& axis, const ModeChannel& homing, const Homing
                   ? axis.objects().channel(axis.config().mode)
                   : &axis.mode().working()),
       settings_(axis.profile(), SettingCheck::Before::homing),
-      writes_(axis.profile().homing.writes),
+      writes_(axis.profile().homing.writes, kOffset, WriteStep::Part::others),
+      offset_(axis.profile().homing.writes, kOffset, WriteStep::Part::named),
       mode_(homing, axis.profile()),
       enabling_(homing, axis.profile()),
       method_(method) {}
@@ -58,6 +48,8 @@ Outcome DriveHoming::advance(const Context& context) {
     }
     case Phase::writing: {
       Outcome outcome = writes_.advance(context);
+      const bool disabled = !context.axis.inOperation();
+      if (outcome.isDone() && disabled) outcome = offset_.advance(context);
       if (outcome.isDone() && method_.moves) outcome = speeds_.advance(context);
       if (!outcome.isDone()) return outcome;
       if (!context.axis.generator().sent().atRest() || !context.axis.limits().settled()) {
@@ -69,6 +61,8 @@ Outcome DriveHoming::advance(const Context& context) {
     }
     case Phase::entering:
       return enterHoming(context);
+    case Phase::offsetting:
+      return writeOffset(context);
     case Phase::clearing:
       return clearOldResult(context);
     case Phase::searching:
@@ -96,7 +90,15 @@ void DriveHoming::begin(const Context& context) {
 
 Outcome DriveHoming::enterHoming(const Context& context) {
   const Outcome outcome = entered_by_mode_ ? mode_.advance(context) : enabling_.advance(context);
-  if (!outcome.isDone()) return outcome;
+  if (outcome.isDone()) enter(Phase::offsetting, context);
+  return outcome.isDone() ? Outcome::running() : outcome;
+}
+
+/// In a drive that has homed before it may count at once: in this mode nothing follows it.
+Outcome DriveHoming::writeOffset(const Context& context) {
+  const Outcome outcome = offset_.advance(context);
+  if (outcome.isFailed()) giveUp(context, outcome.message);
+  if (!outcome.isDone()) return Outcome::running();
   enter(Phase::clearing, context);
   context.show("preparing the start", "the result of an earlier homing to be cleared");
   return Outcome::running();
@@ -200,10 +202,10 @@ void DriveHoming::succeed(const Context& context) {
   end_ = context.now;
   const ObjectSpec* object = axis.profile().find(axis.profile().own({0x607C, 0}));
   const bool lacks = object == nullptr || saidToLack(axis.config(), object->name);
-  if (offsetIsWritten(axis) && !writes_.leftOut("homing.offset")) {
+  if (writesOffset(axis)) {
     adopt(context, axis.config().homing->atHome());
   } else if (!lacks && object->readable) {
-    offset_ = axis.device().objects().upload(object->id, object->name);
+    read_ = axis.device().objects().upload(object->id, object->name);
     enter(Phase::reading_offset, context);
     context.show("reading the home offset", axis.profile().address(0x607C) + " home offset");
   } else {
@@ -212,21 +214,21 @@ void DriveHoming::succeed(const Context& context) {
 }
 
 Outcome DriveHoming::readOffset(const Context& context) {
-  if (!offset_->done()) return Outcome::running();
-  const bool missing = offset_->failure() == fieldbus::Transfer::Failure::aborted_by_server &&
-                       (offset_->abortCode() == fieldbus::abort_code::kNoSuchObject ||
-                        offset_->abortCode() == fieldbus::abort_code::kNoSuchSubindex);
+  if (!read_->done()) return Outcome::running();
+  const bool missing = read_->failure() == fieldbus::Transfer::Failure::aborted_by_server &&
+                       (read_->abortCode() == fieldbus::abort_code::kNoSuchObject ||
+                        read_->abortCode() == fieldbus::abort_code::kNoSuchSubindex);
   if (missing) {  // the home position is its zero then
     adopt(context, context.axis.objects().signals[SignalId::position].conversion.toJoint(0));
     return Outcome::running();
   }
-  if (!offset_->ok() || offset_->data().size() > 8) {
-    giveUp(context, "home was found, but the home offset could not be read: " + offset_->message());
+  if (!read_->ok() || read_->data().size() > 8) {
+    giveUp(context, "home was found, but the home offset could not be read: " + read_->message());
     return Outcome::running();
   }
   const AxisCore& axis = context.axis;
   const Signal& position = axis.objects().signals[SignalId::position];
-  const std::uint64_t offset = fieldbus::toUnsigned(offset_->data());
+  const std::uint64_t offset = fieldbus::toUnsigned(read_->data());
   const bool minus = axis.config().homing->offset_shifts_zero;
   adopt(context,
         position.conversion.toJoint(minus ? negated(offset, position.spec->type) : offset));
@@ -246,7 +248,7 @@ Outcome DriveHoming::settle(const Context& context) {
   const bool sent = axis.control().frames() >= frames_ + kSureFrames;
   if (sent && (axis.feedback().atStandstill() ||
                context.now - since_ > axis.profile().timing.state_change)) {
-    const std::string wrong = offsetProblem(axis);
+    const std::string wrong = offsetProblem(axis, writesOffset(axis), method_.moves);
     if (!wrong.empty()) {
       axis.loseZero();
       return failHomed(context, ": is not homed: " + wrong + "; quick stop is commanded");
@@ -256,33 +258,6 @@ Outcome DriveHoming::settle(const Context& context) {
     context.show("writing position limits", "the drive to take those of the new zero");
   }
   return Outcome::running();
-}
-
-/// Where the axis stands after it found home, read from the drive, tells the sign of its home
-/// offset, if that is larger than the way on which it came to rest.
-std::string DriveHoming::offsetProblem(const AxisCore& axis) const {
-  const HomingOptions& options = *axis.config().homing;
-  const ObjectSpec* object = axis.profile().find(axis.profile().own({0x607C, 0}));
-  const bool written = offsetIsWritten(axis) && !writes_.leftOut("homing.offset");
-  const bool known = options.acceleration > 0.0 && options.search_velocity > 0.0;
-  if (!written || object == nullptr || (method_.moves && !known) || meansItsOwn(axis)) return {};
-  const Conversion& position = axis.objects().signals[SignalId::position].conversion;
-  std::uint64_t raw = 0;
-  if (!position.toDevice(options.atHome(), raw)) return {};
-  const double mirrored =
-      position.toJoint(negated(raw, axis.objects().signals[SignalId::position].spec->type));
-  const double speed = std::max(options.search_velocity, options.zero_velocity);
-  const double way =
-      method_.moves ? speed * speed / (2.0 * options.acceleration) + speed * kBrakesAfter : 0.0;
-  const double at = axis.state().position;
-  const double off = std::fabs(at - options.atHome());
-  if (!std::isfinite(at) || off <= way || std::fabs(at - mirrored) >= off) return {};
-  return "home was found, but " + axis.profile().address(0x6064) + " reads " +
-         length(at, axis.config().geometry.prismatic()) + " there instead of " +
-         length(options.atHome(), axis.config().geometry.prismatic()) + ": the drive takes " +
-         fieldbus::toString(object->id) + " home offset with the other sign; set " +
-         "homing/offset_means of axes/" + axis.config().name + " to " +
-         (options.offset_shifts_zero ? "position_at_home" : "shift_of_zero");
 }
 
 /// Home was found, and yet it is not to be relied on.
@@ -385,10 +360,11 @@ bool DriveHoming::statuswordIsFresh(const Context& context) const {
   return image.input(object.slot).stamp > since_;
 }
 
-bool DriveHoming::offsetIsWritten(const AxisCore& axis) const {
+bool DriveHoming::writesOffset(const AxisCore& axis) const {
   const std::vector<NamedWrite>& writes = axis.profile().homing.writes;
-  return std::any_of(writes.begin(), writes.end(),
-                     [](const NamedWrite& write) { return write.from == "homing.offset"; });
+  const bool has = std::any_of(writes.begin(), writes.end(),
+                               [](const NamedWrite& write) { return write.from == kOffset; });
+  return has && !offset_.leftOut(kOffset);
 }
 
 std::string DriveHoming::method(const AxisCore& axis) const {

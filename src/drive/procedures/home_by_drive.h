@@ -30,7 +30,8 @@ class DriveHoming : public Procedure {
   enum class Phase {
     begin,  ///< what must hold before (SettingsStep)
     writing,
-    entering,   ///< homing mode, enabled
+    entering,  ///< homing mode, enabled
+    offsetting,
     clearing,   ///< bits of an earlier homing
     searching,  ///< bit 4 is high
     reading_offset,
@@ -43,6 +44,7 @@ class DriveHoming : public Procedure {
   void enter(Phase phase, const Context& context);
   void begin(const Context& context);
   Outcome enterHoming(const Context& context);
+  Outcome writeOffset(const Context& context);
   Outcome clearOldResult(const Context& context);
   void start(const Context& context);
   Outcome search(const Context& context);
@@ -53,7 +55,6 @@ class DriveHoming : public Procedure {
   Outcome settle(const Context& context);
   Outcome limit(const Context& context);
   Outcome failHomed(const Context& context, const std::string& why);
-  std::string offsetProblem(const AxisCore& axis) const;
   void giveUp(const Context& context, std::string why);
   Outcome stop(const Context& context);
   void restore(const Context& context);
@@ -62,18 +63,19 @@ class DriveHoming : public Procedure {
   HomingStatus status(const Context& context) const;
   bool attained(const Context& context) const;
   bool statuswordIsFresh(const Context& context) const;
-  bool offsetIsWritten(const AxisCore& axis) const;
+  bool writesOffset(const AxisCore& axis) const;
   std::string method(const AxisCore& axis) const;
 
   const ModeChannel* homing_;
   const ModeChannel* before_;
   SettingsStep settings_;
   WriteStep writes_;
+  WriteStep offset_;  ///< 607Ch: before an axis is enabled, else in homing mode
   HomingSpeedStep speeds_;
   SwitchStep mode_;
   EnableStep enabling_;
   std::optional<SwitchStep> restoring_;
-  fieldbus::Ticket offset_;
+  fieldbus::Ticket read_;  ///< of 607Ch
 
   Phase phase_ = Phase::begin;
   HomingMethod method_;  ///< that is configured

@@ -107,6 +107,11 @@ bool WriteStep::begin(const Context& context, Outcome& problem) {
     problem = Outcome::done();
     return false;
   }
+  const bool named = (*writes_)[next_].from == name_;
+  if (!name_.empty() && named != (part_ == Part::named)) {
+    ++next_;
+    return true;
+  }
   const auto resolved = resolveWrite(chosen(context), context.axis.config());
   if (!resolved) {
     problem = Outcome::failed(context.axis.who() + ": " + resolved.error().message);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "drive/procedures/procedure.h"
@@ -15,6 +16,10 @@ namespace cia402::drive {
 class WriteStep {
  public:
   explicit WriteStep(const std::vector<NamedWrite>& writes) : writes_(&writes) {}
+  /// Which of the writes: those whose NamedWrite::from is the name, or the others.
+  enum class Part { named, others };
+  WriteStep(const std::vector<NamedWrite>& writes, std::string name, Part part)
+      : writes_(&writes), name_(std::move(name)), part_(part) {}
   Outcome advance(const Context& context);
   /// What was written to objects that are outputs, too.
   struct Mapped {
@@ -38,6 +43,8 @@ class WriteStep {
   void write(const Context& context, fieldbus::Bytes bytes);
 
   const std::vector<NamedWrite>* writes_;  ///< in the profile, which outlives every procedure
+  std::string name_;                       ///< empty: all are written
+  Part part_ = Part::others;
   std::size_t next_ = 0;
   ResolvedWrite current_;
   fieldbus::Ticket ticket_;
