@@ -308,7 +308,7 @@ void Trajectories::ended(std::uint64_t id, const bus::TrajectoryOutcome& outcome
   }
   if (waits(sent)) neverBegan(sent);
   session_.stage.look(session_.truths);
-  if (outcome.end == bus::TrajectoryEnd::reached) judgeReached(sent);
+  if (outcome.end == bus::TrajectoryEnd::reached) judgeReached(sent, outcome);
   const bool stopped = outcome.end == bus::TrajectoryEnd::stopped && !waits(sent);
   const bool restless = outcome.message.find("still moves") != std::string::npos;
   if (stopped && !restless) judgeStopped(sent, outcome.message);
@@ -331,7 +331,9 @@ bool Trajectories::judged(const Sent& sent, std::size_t axis) const {
          session_.conditions.quiet(axis, session_.now());
 }
 
-void Trajectories::judgeReached(const Sent& sent) const {
+void Trajectories::judgeReached(const Sent& sent, const bus::TrajectoryOutcome& outcome) const {
+  // Without a tolerance it is over wherever its joints are; the answer names the farthest.
+  const double said = std::isfinite(outcome.off) ? outcome.off : 0.0;
   for (std::size_t i = 0; i < sent.goals.size(); ++i) {
     const JointFacts& facts = jointAt(sent.joints[i]);
     const auto tolerance = sent.group->tolerances.find(facts.name);
@@ -343,7 +345,7 @@ void Trajectories::judgeReached(const Sent& sent) const {
     for (std::size_t k = 0; k < facts.axes.size(); ++k) {
       counts += std::fabs(facts.shares[k] * session_.stage.axes()[facts.axes[k]].units_per_count);
     }
-    const double bound = (told ? tolerance->second.goal : kArrived) + sent.goals[i].slack +
+    const double bound = (told ? tolerance->second.goal : kArrived + said) + sent.goals[i].slack +
                          facts.speed(session_.truths) * kShownAge + 2.0 * counts;
     if (std::fabs(missing) <= bound) continue;
     session_.report("untrue_answer", session_.stage.axes()[facts.axes.front()].name,

@@ -91,7 +91,7 @@ class Trajectories {
   void ended(std::uint64_t id, const bus::TrajectoryOutcome& outcome);
   /// Whether the driver hears and reaches an axis, and it was moved by that trajectory last.
   bool judged(const Sent& sent, std::size_t axis) const;
-  void judgeReached(const Sent& sent) const;
+  void judgeReached(const Sent& sent, const bus::TrajectoryOutcome& outcome) const;
   void judgeStopped(const Sent& sent, const std::string& words) const;
   void stopped(const Sent& sent, std::size_t axis);
   Time restAfter(const Sent& sent, std::size_t axis) const;

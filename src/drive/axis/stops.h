@@ -1,11 +1,10 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstdint>
 #include <string>
 
 #include "drive/axis/basis.h"
-#include "drive/axis/runaway_watch.h"
+#include "drive/axis/runaway.h"
 
 namespace cia402::drive {
 
@@ -14,7 +13,7 @@ class AxisCore;
 /// Brings an axis to rest that stays in operation, by what its mode has for it (stopBy()).
 class Stops {
  public:
-  explicit Stops(AxisCore& axis);  ///< @param axis must outlive this
+  explicit Stops(AxisCore& axis);  ///< @param axis must outlive this; its other parts exist
 
   /// Stops and stays stopped until endHalt(). Where nothing but a quick stop brakes, the axis
   /// leaves operation.
@@ -38,7 +37,7 @@ class Stops {
   /// gets a quick stop, where that does not brake it its power is switched off, and where the
   /// drive does not do that it is reset.
   void watch(Time now) {
-    if (now >= look_at_) watchMotion(now);
+    runaway_.watch(now);
     if (urgent_ticket_ && urgent_ticket_->done()) judgeUrgent();
     if (holding_) finishHold();
   }
@@ -68,11 +67,6 @@ class Stops {
   void quickStopUrgently();
   void brakeEffort(Time now);
   [[gnu::cold]] void judgeUrgent();
-  void watchMotion(Time now);
-  RunawayWatch::Led led(Time now);
-  [[gnu::cold]] void stopRunaway(const RunawayWatch::Led& led, Time now);
-  [[gnu::cold]] void letGo(Time now);
-  [[gnu::cold]] void resetDrive(Time now);
   [[gnu::cold]] void finishHold();
 
   AxisCore& axis_;
@@ -83,12 +77,7 @@ class Stops {
   bool urgent_ = false;          ///< a quick stop by a write follows once the mode brakes
   bool holding_ = false;         ///< by hold(), and the motor has not been seen to stand since
   fieldbus::Ticket brake_ticket_, urgent_ticket_;
-  RunawayWatch runaway_;
-  Time settled_{};                  ///< the drive has not come to its goal before
-  Time look_at_{};                  ///< when it looks again
-  bool watches_stop_ = false;       ///< a quick stop, or a fault reaction, has begun
-  bool let_go_ = false;             ///< the power was to be off
-  std::uint32_t zero_changes_ = 0;  ///< of the positions that it has seen
+  Runaway runaway_;
 };
 
 }  // namespace cia402::drive
