@@ -33,6 +33,22 @@ TEST(Axis, AWarningStopsOnlyWhereTheProfileSaysSo) {
   EXPECT_THAT(strict.axis.notice(), HasSubstr("statusword bit 7"));
 }
 
+TEST(Axis, AWarningThatStopsTheDriveIsAFaultWhateverOthersAre) {
+  DriveProfile profile = testProfile();
+  profile.warnings[0x5003] = {"hot", "", "", WarningText::Reaction::stops};
+  Bench bench(testConfig(profile));
+  ASSERT_TRUE(bench.boot());
+  ASSERT_TRUE(bench.enable());
+  bench.drive.error = 0x5002;
+  bench.drive.warning = true;
+  bench.run(milliseconds(40));
+  EXPECT_TRUE(bench.axis.state().ready_for_motion);
+  bench.drive.error = 0x5003;
+  bench.run(milliseconds(40));
+  EXPECT_FALSE(bench.axis.state().ready_for_motion);
+  EXPECT_THAT(bench.axis.notice(), HasSubstr("which makes it stop like a fault"));
+}
+
 /// 0x5001 holds the motor, 0x5002 only tells; others stop the drive like a fault.
 DriveProfile warned() {
   DriveProfile profile = testProfile();

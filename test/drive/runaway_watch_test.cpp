@@ -29,7 +29,7 @@ struct Watched {
       const double at = std::round(position(seconds(now)) / kCount) * kCount;
       if (now < next_) continue;
       next_ = now + watch.window();
-      if (watch.runsAway(at, now, led(seconds(now)))) return at;
+      if (watch.measure(at, now) && watch.runsAway(led(seconds(now)))) return at;
     }
     return {};
   }
@@ -150,19 +150,20 @@ TEST(RunawayWatch, TakesALeapForNoMotion) {
 
 TEST(RunawayWatch, KnowsNothingAcrossAGap) {
   RunawayWatch watch{kStandstill, kCount, kAcceleration, kCycle};
-  EXPECT_FALSE(watch.runsAway(0.0, Time{} + 1s, to(0.0)));
-  EXPECT_FALSE(watch.runsAway(-2.0, Time{} + 2s, to(0.0)));
+  EXPECT_FALSE(watch.measure(0.0, Time{} + 1s));
+  EXPECT_FALSE(watch.measure(-2.0, Time{} + 2s));
   EXPECT_EQ(watch.velocity(), 0.0);
 }
 
 /// A quick stop in which the joint moves so.
 std::optional<double> escapesAt(const std::function<double(double)>& position, bool runs_away) {
   RunawayWatch watch{kStandstill, kCount, kAcceleration, kCycle};
-  (void)watch.runsAway(position(-0.02), Time{} + 980ms, turning(10.0));
-  (void)watch.runsAway(position(0.0), Time{} + 1s, turning(10.0));
+  (void)watch.measure(position(-0.02), Time{} + 980ms);
+  (void)watch.measure(position(0.0), Time{} + 1s);
   watch.beginStop(Time{} + 1s, runs_away);
   for (Duration later = watch.window(); later < 2s; later += watch.window()) {
-    if (watch.escapes(position(toSeconds(later)), Time{} + 1s + later)) return toSeconds(later);
+    const bool measured = watch.measure(position(toSeconds(later)), Time{} + 1s + later);
+    if (measured && watch.escapes()) return toSeconds(later);
   }
   return {};
 }

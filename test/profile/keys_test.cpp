@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "drive/profile/fault_text.h"
 #include "profile/full_profile.h"
 
 namespace cia402::config {
@@ -255,17 +256,40 @@ TEST(ProfileWarnings, HaveWordsAndAReaction) {
           "warnings:\n"
           "  0x2310: nearly too much current\n"
           "  0xFF0C: {text: stalled, cause: load, remedy: less of it, reaction: holds}\n"
-          "  0xFF0D: {text: warm, reaction: goes_on}\n",
+          "  0xFF0D: {text: warm, reaction: goes_on}\n"
+          "  0xFF0E: {text: hot, reaction: stops}\n",
       "full.yaml", problems);
   ASSERT_EQ(problems.text(), "");
   DriveProfile& profile = family.drive;
-  ASSERT_EQ(profile.warnings.size(), 3U);
+  ASSERT_EQ(profile.warnings.size(), 4U);
   EXPECT_EQ(profile.warnings[0x2310].text, "nearly too much current");
   EXPECT_FALSE(profile.warnings[0x2310].reaction.has_value());
   EXPECT_EQ(profile.warnings[0xFF0C].cause, "load");
   EXPECT_EQ(profile.warnings[0xFF0C].remedy, "less of it");
   EXPECT_EQ(profile.warnings[0xFF0C].reaction, Reaction::holds);
   EXPECT_EQ(profile.warnings[0xFF0D].reaction, Reaction::goes_on);
+  EXPECT_EQ(profile.warnings[0xFF0E].reaction, Reaction::stops);
+}
+
+TEST(ProfileErrors, SayWhatTheDriveDoesWithTheMotor) {
+  using Reaction = ErrorText::Reaction;
+  Problems problems;
+  DriveFamily family =
+      parseDriveFamily(std::string(kHead) +
+                           "  csp: {value: 8, control: position, target: target_position}\n"
+                           "fault_reaction: brakes\n"
+                           "errors:\n"
+                           "  0x2310: too much current\n"
+                           "  0xFF0C: {text: bridge broken, reaction: coasts}\n",
+                       "full.yaml", problems);
+  ASSERT_EQ(problems.text(), "");
+  const DriveProfile& profile = family.drive;
+  EXPECT_EQ(profile.fault_reaction, Reaction::brakes);
+  EXPECT_FALSE(profile.errors.at(0x2310).reaction.has_value());
+  EXPECT_EQ(profile.errors.at(0xFF0C).reaction, Reaction::coasts);
+  EXPECT_EQ(drive::reactionText(profile, 0x2310), "; the drive brakes the motor");
+  EXPECT_EQ(drive::reactionText(profile, 0xFF0C), "; the drive lets the motor coast");
+  EXPECT_EQ(drive::reactionText(DriveProfile{}, 0x2310), "");
 }
 
 TEST(ProfileDefaults, AreThoseOfTheStandards) {

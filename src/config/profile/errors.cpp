@@ -41,6 +41,13 @@ void readCodes(const yaml::Value& value, std::map<Code, Text>& codes, Read&& rea
 
 }  // namespace
 
+std::optional<ErrorText::Reaction> readFaultReaction(yaml::Section& section, const char* key) {
+  const auto word = section.get(key);
+  const auto index = word ? word->oneOf({"brakes", "coasts"}) : std::nullopt;
+  if (!index) return {};
+  return static_cast<ErrorText::Reaction>(*index);
+}
+
 void readErrors(const yaml::Value& value, DriveProfile& profile) {
   readCodes(value, profile.errors, [](yaml::Section& details, ErrorText& error) {
     using Missing = ErrorText::Missing;
@@ -52,6 +59,7 @@ void readErrors(const yaml::Value& value, DriveProfile& profile) {
       const auto index = reset->oneOf({"by_bit", "by_itself", "power_cycle"});
       if (index) error.reset = static_cast<ErrorText::Reset>(*index);
     }
+    error.reaction = readFaultReaction(details, "reaction");
     readDuration(details, "wait", yaml::Range{0.0, 3600.0, false}, error.wait);
     details.read("loses_zero", error.loses_zero);
   });
@@ -126,7 +134,7 @@ void readWarnings(const yaml::Value& value, DriveProfile& profile) {
   }
   readCodes(value, profile.warnings, [](yaml::Section& details, WarningText& warning) {
     const auto reaction = details.get("reaction");
-    const auto index = reaction ? reaction->oneOf({"goes_on", "holds"}) : std::nullopt;
+    const auto index = reaction ? reaction->oneOf({"goes_on", "holds", "stops"}) : std::nullopt;
     if (index) warning.reaction = static_cast<WarningText::Reaction>(*index);
   });
 }

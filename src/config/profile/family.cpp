@@ -204,6 +204,7 @@ void readBehaviour(yaml::Section& section, DriveProfile& profile) {
   section.read("output_shaft", profile.output_shaft);
   section.read("halt_supported", profile.halt_supported);
   section.read("warning_stops", profile.warning_stops);
+  profile.fault_reaction = readFaultReaction(section, "fault_reaction");
   readStatusWords(section, profile);
   readModeChange(section, profile);
   section.readInteger("fault_reset_tries", profile.fault_reset.tries, 1, 20);

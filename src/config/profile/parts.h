@@ -46,6 +46,9 @@ void readDoubtful(const yaml::Value& value, DriveProfile& profile);
 void readAfterPower(const yaml::Value& value, DriveProfile& profile);
 void readModes(const yaml::Value& value, DriveProfile& profile);
 void readHoming(const yaml::Value& value, DriveProfile& profile);
+/// `reaction` of an entry of `errors`, and `fault_reaction`; nothing: it is not said.
+std::optional<drive::ErrorText::Reaction> readFaultReaction(yaml::Section& section,
+                                                            const char* key);
 void readErrors(const yaml::Value& value, DriveProfile& profile);
 /// @pre `statusword` was read
 void readWarnings(const yaml::Value& value, DriveProfile& profile);

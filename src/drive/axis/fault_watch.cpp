@@ -39,9 +39,15 @@ FaultWatch::Warning FaultWatch::warning() const {
   if (known == profile.warnings.end() || !known->second.reaction) {
     return profile.warning_stops ? Warning::stops : Warning::goes_on;
   }
-  const bool news = code != acknowledged_;
-  return *known->second.reaction == WarningText::Reaction::holds && news ? Warning::holds
-                                                                         : Warning::goes_on;
+  switch (*known->second.reaction) {
+    case WarningText::Reaction::stops:
+      return Warning::stops;
+    case WarningText::Reaction::holds:
+      return code != acknowledged_ ? Warning::holds : Warning::goes_on;
+    case WarningText::Reaction::goes_on:
+      break;
+  }
+  return Warning::goes_on;
 }
 
 bool FaultWatch::holdsMotor() const {
@@ -104,7 +110,8 @@ std::string FaultWatch::text() const {
              axis_.profile().address(0x603F) + " is 0 and no " + axis_.device.terms().emergency +
              " came); clear_faults, then look at the drive's own display or log";
     }
-    return axis_.who() + ": fault " + codeText(state.error_code) + detailText() + reacting + "; " +
+    return axis_.who() + ": fault " + codeText(state.error_code) + detailText() + reacting +
+           reactionText(axis_.profile(), state.error_code) + "; " +
            afterwardsText(axis_.profile(), state.error_code);
   }
   if (state.error_code != 0 && errors_.excuse(state.error_code) == nullptr) {

@@ -11,17 +11,17 @@ LimitKeeper::LimitKeeper(AxisBasis& axis, const Coordinates& coordinates)
 void LimitKeeper::open(bool open) {
   if (open_ == open) return;
   open_ = open;
-  due_ = true;
+  renew();
 }
 
 void LimitKeeper::adopt() {
   limits_.adopt(axis_.config);
-  due_ = true;
+  renew();
 }
 
 void LimitKeeper::forget() {
   limits_.forget();
-  due_ = true;
+  renew();
 }
 
 void LimitKeeper::work(double target) {
@@ -35,6 +35,8 @@ void LimitKeeper::work(double target) {
     limits_.closeIfInside(state.position, target);
   }
   limits_.advance(axis_.device.objects());
+  homed_ = state.homed;
+  works_ = !limits_.idle() || due_ || known != known_;
 }
 
 }  // namespace cia402::drive

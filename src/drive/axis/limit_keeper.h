@@ -16,7 +16,7 @@ class LimitKeeper {
   /// Keeps them open, for the drive is about to get another zero; or no more.
   void open(bool open);
   /// Has them worked out anew: the zero has moved, or the axis is about to be enabled.
-  void renew() { due_ = true; }
+  void renew() { due_ = works_ = true; }
   /// The joint's limits are others (AxisConfig).
   void adopt();
   /// Another drive may be there, or the same with other parameters.
@@ -28,7 +28,7 @@ class LimitKeeper {
   std::string remark() const { return limits_.remark(); }
 
   /// To be asked once a cycle, while the device is ready: work() has something to do.
-  bool works() const { return !limits_.idle() || due_ || belong() != known_; }
+  bool works() const { return works_ || axis_.state.homed != homed_; }
   /// @param target that the axis goes to, rad or m; where it goes to none, its position
   void work(double target);
 
@@ -40,6 +40,7 @@ class LimitKeeper {
   const Coordinates& coordinates_;
   PositionLimits limits_;
   bool due_ = true, open_ = false, known_ = false;
+  bool works_ = true, homed_ = false;  ///< as the last work() left them
 };
 
 }  // namespace cia402::drive

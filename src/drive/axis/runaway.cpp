@@ -40,20 +40,33 @@ Runaway::Runaway(AxisCore& axis)
 void Runaway::look(Time now) {
   look_at_ = now + watch_.window();
   const AxisState& state = axis_.state();
-  const bool no_power = !axis_.deviceReady() || axis_.powerOff();
   const bool moved = std::exchange(zero_changes_, state.zero_changes) != state.zero_changes;
-  if (no_power) watches_stop_ = let_go_ = false;
-  if (no_power || moved || !state.feedback_valid) return watch_.forget();
-  if (axis_.inOperation()) {
+  if (moved || !state.feedback_valid) return watch_.forget();
+  if (!axis_.inOperation()) return lookAtStop(now);
+  watches_stop_ = let_go_ = false;
+  if (!state.internal_limit) {
+    limited_at_ = kUnknown;
+  } else if (std::isnan(limited_at_)) {
+    limited_at_ = state.position;
+  }
+  if (!watch_.measure(state.position, state.stamp)) return;
+  const SetPoint& sent = axis_.generator().sent();
+  if (sent.kind() == SetPointKind::stream && watch_.follows(sent.velocity())) return;
+  const RunawayWatch::Led where = led(now);
+  if (watch_.runsAway(where)) stop(where, now);
+}
+
+/// It is being stopped, or nobody wants it to move.
+void Runaway::lookAtStop(Time now) {
+  const AxisState& state = axis_.state();
+  if (!axis_.deviceReady() || axis_.powerOff()) {
     watches_stop_ = let_go_ = false;
-    const RunawayWatch::Led where = led(now);
-    if (watch_.runsAway(state.position, state.stamp, where)) stop(where, now);
-    return;
+    return watch_.forget();
   }
   const bool reacts = state.state == State::fault_reaction_active;
   if (axis_.goal() != Goal::quick_stop && !reacts && !let_go_) return;
   if (!std::exchange(watches_stop_, true)) watch_.beginStop(now, false);
-  if (!watch_.escapes(state.position, state.stamp)) return;
+  if (!watch_.measure(state.position, state.stamp) || !watch_.escapes()) return;
   reacts || let_go_ ? reset(now) : letGo(now);
 }
 
@@ -87,10 +100,7 @@ RunawayWatch::Led Runaway::led(Time now) {
       break;
   }
   // A drive that a limit stops holds the motor there, whatever it is led to, and swings back to it.
-  const AxisState& state = axis_.state();
-  if (!state.internal_limit) limited_at_ = kUnknown;
-  if (state.internal_limit && std::isnan(limited_at_)) limited_at_ = state.position;
-  where.lowest = std::fmin(where.lowest, limited_at_);
+  where.lowest = std::fmin(where.lowest, limited_at_);  // of a number and none: the number
   where.highest = std::fmax(where.highest, limited_at_);
   return where;
 }

@@ -23,8 +23,9 @@ class Runaway {
   }
 
  private:
-  void look(Time now);
-  RunawayWatch::Led led(Time now);
+  [[gnu::noinline]] void look(Time now);  // not in every cycle
+  [[gnu::cold]] void lookAtStop(Time now);
+  [[gnu::cold]] RunawayWatch::Led led(Time now);
   [[gnu::cold]] void stop(const RunawayWatch::Led& led, Time now);
   [[gnu::cold]] void letGo(Time now);
   [[gnu::cold]] void reset(Time now);

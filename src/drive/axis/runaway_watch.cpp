@@ -12,8 +12,6 @@ namespace {
 constexpr double kClearly = 3.0, kFast = 100.0;
 /// It may be gone so far away, in standstill velocity times s; a held one farther.
 constexpr double kFar = 3.0, kFarHeld = 10.0;
-/// Faster than it is led by more than that it is not led.
-constexpr double kAhead = 1.25;
 /// Faster than it was by more than that it is accelerated, for a window is a few positions long,
 /// each of them late or early by a cycle.
 constexpr double kFaster = 1.3;
@@ -41,7 +39,6 @@ void RunawayWatch::forget() {
   way_ = velocity_ = velocity_before_ = 0.0;
 }
 
-/// @return true at the end of a window
 bool RunawayWatch::measure(double position, Time stamp) {
   const Duration took = stamp - stamp_;
   if (started_ && took < window_ / 2) return false;
@@ -51,38 +48,32 @@ bool RunawayWatch::measure(double position, Time stamp) {
   if (known) velocity_ = (position - position_) / toSeconds(took);
   if (known && !measured_) velocity_before_ = velocity_;
   measured_ = known;
+  position_before_ = position_;
   position_ = position;
   stamp_ = stamp;
   started_ = true;
   return known;
 }
 
-bool RunawayWatch::explained(double position, const Led& led) const {
-  if (std::fabs(velocity_) <= std::max(clearly_, led.speed)) return true;
-  const bool along = velocity_ * led.velocity > 0.0 &&
-                     std::fabs(velocity_) <= kAhead * std::fabs(led.velocity) + clearly_;
-  return along || (velocity_ > 0.0 ? position < led.highest : position > led.lowest);
-}
-
-bool RunawayWatch::runsAway(double position, Time stamp, const Led& led) {
-  const double before = position_;
-  if (!measure(position, stamp)) return false;
-  if (explained(position, led)) {
+bool RunawayWatch::runsAway(const Led& led) {
+  const bool towards = velocity_ > 0.0 ? position_ < led.highest : position_ > led.lowest;
+  if (follows(led.velocity)) return false;
+  if (towards || std::fabs(velocity_) <= led.speed) {
     way_ = 0.0;
     return false;
   }
   const double way = std::copysign(1.0, velocity_);
   if (way_ != way) {  // what is seen once may be a leap of what is measured
     way_ = way;
-    from_ = before;
+    from_ = position_before_;
     speed_ = std::max(0.0, way * velocity_before_);
     return false;
   }
-  const double gone = std::fabs(position - from_), speed = std::fabs(velocity_);
+  const double gone = std::fabs(position_ - from_), speed = std::fabs(velocity_);
   const double far = distance_ + kReaction * speed_, turn = speed_ * speed_ / acceleration_;
   const double faster = kFaster * speed_ + clearly_, sets_off = kReaction * acceleration_;
   if (gone > far + turn && speed <= faster) {  // it turns back, or coasts
-    from_ = position;
+    from_ = position_;
     speed_ = speed;
     return false;
   }
@@ -98,11 +89,11 @@ void RunawayWatch::beginStop(Time now, bool runs_away) {
   way_ = 0.0;
 }
 
-bool RunawayWatch::escapes(double position, Time stamp) {
-  if (!measure(position, stamp) || stamp < stop_ + kReactionWindows * window_) return false;
+bool RunawayWatch::escapes() {
+  if (stamp_ < stop_ + kReactionWindows * window_) return false;
   const double speed = std::fabs(velocity_);
   if (ran_away_ && speed > kAgain * speed_) return true;
-  if (ran_away_ && stamp >= stop_ + kBrakingWindows * window_ && speed > kSlower * began_) {
+  if (ran_away_ && stamp_ >= stop_ + kBrakingWindows * window_ && speed > kSlower * began_) {
     return true;
   }
   const int judged = judged_++;

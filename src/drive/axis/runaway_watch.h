@@ -1,6 +1,7 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cmath>
 #include <limits>
 
 #include "cia402_driver/common/time.h"
@@ -35,15 +36,25 @@ class RunawayWatch {
     bool on = false;
   };
   /// @param position rad or m, with the time that it was on the wire
+  /// @return true at the end of a window: the motor is to be judged
+  bool measure(double position, Time stamp);
+  /// It goes with the set-points, whose velocity this is, or is as good as standing.
+  bool follows(double velocity) {
+    const double speed = std::fabs(velocity_);
+    const bool along =
+        velocity_ * velocity > 0.0 && speed <= kAhead * std::fabs(velocity) + clearly_;
+    if (!along && speed > clearly_) return false;
+    way_ = 0.0;
+    return true;
+  }
   /// @return true: it runs away
-  bool runsAway(double position, Time stamp, const Led& led);
+  bool runsAway(const Led& led);
 
-  /// A quick stop begins.
-  /// @param runs_away because the motor does: it has to get slower at once
+  /// A quick stop begins. @param runs_away because the motor does: it has to get slower at once
   void beginStop(Time now, bool runs_away);
   /// While that lasts, or a fault reaction. @return true: the motor does not get slower by it, but
   /// faster
-  bool escapes(double position, Time stamp);
+  bool escapes();
 
   /// Nothing is known any more: of other coordinates, or not heard of.
   void forget();
@@ -51,8 +62,8 @@ class RunawayWatch {
   double velocity() const { return velocity_; }
 
  private:
-  bool measure(double position, Time stamp);
-  bool explained(double position, const Led& led) const;
+  /// Faster than it is led by more than that it is not led.
+  static constexpr double kAhead = 1.25;
 
   Duration window_;
   double clearly_;                           ///< what is faster moves, rad/s or m/s
@@ -60,7 +71,7 @@ class RunawayWatch {
   double distance_;                          ///< that an error of control may take, rad or m
   double acceleration_;                      ///< rad/s^2 or m/s^2
   bool started_ = false, measured_ = false;  ///< a window has begun; one has ended
-  double position_ = 0.0, velocity_ = 0.0, velocity_before_ = 0.0;
+  double position_ = 0.0, position_before_ = 0.0, velocity_ = 0.0, velocity_before_ = 0.0;
   Time stamp_{};
   double way_ = 0.0;    ///< 1 or -1 while it moves away, which way; else 0
   double from_ = 0.0;   ///< it moves away from there, rad or m,

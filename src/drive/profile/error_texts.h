@@ -24,7 +24,13 @@ struct ErrorText {
     by_itself,    ///< the drive, once its cause is gone
     power_cycle,  ///< nothing but switching the drive's power off and on
   };
+  /// What the drive does with the motor in it.
+  enum class Reaction : std::uint8_t {
+    brakes,  ///< to rest, and switches its power off then
+    coasts,  ///< lets it go at once
+  };
   std::string text, cause, remedy;
+  std::optional<Reaction> reaction{};  ///< nothing: as DriveProfile::fault_reaction says
   Missing missing = Missing::nothing;
   Reset reset = Reset::by_bit;
   Duration wait{0};         ///< since the fault, before which the drive takes no reset
@@ -65,6 +71,7 @@ struct WarningText {
   enum class Reaction : std::uint8_t {
     goes_on,  ///< it only tells
     holds,    ///< the drive brings the motor to rest and holds it, and may let it go by itself
+    stops,    ///< the drive stops like in a fault
   };
   std::string text, cause, remedy;
   std::optional<Reaction> reaction;  ///< nothing: as DriveProfile::warning_stops says

@@ -57,6 +57,15 @@ std::string errorName(const DriveProfile& profile, std::uint16_t code) {
   return together.empty() ? fieldbus::emergencyText(code) : together;
 }
 
+std::string reactionText(const DriveProfile& profile, std::uint16_t code) {
+  const auto known = profile.errors.find(code);
+  const bool its_own = known != profile.errors.end() && known->second.reaction;
+  const auto& reaction = its_own ? known->second.reaction : profile.fault_reaction;
+  if (!reaction) return "";
+  return *reaction == ErrorText::Reaction::coasts ? "; the drive lets the motor coast"
+                                                  : "; the drive brakes the motor";
+}
+
 std::string afterwardsText(const DriveProfile& profile, std::uint16_t code) {
   const std::vector<std::uint16_t> parts = partsOf(profile, code);
   const auto known = profile.errors.find(parts.empty() ? code : parts.front());

@@ -14,6 +14,9 @@ std::string errorCodeText(const DriveProfile& profile, std::uint16_t code);
 /// The same for a code that comes without a fault.
 std::string warningCodeText(const DriveProfile& profile, std::uint16_t code);
 
+/// What the drive does with the motor in a fault: "; the drive lets the motor coast"; empty: that
+/// is not said.
+std::string reactionText(const DriveProfile& profile, std::uint16_t code);
 /// What a person does next once the cause of a fault is gone: "then clear_faults".
 std::string afterwardsText(const DriveProfile& profile, std::uint16_t code);
 

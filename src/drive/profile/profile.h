@@ -246,8 +246,9 @@ struct DriveProfile {
   FaultReset fault_reset;
   bool reads_back = false;  ///< what is written is read again and compared
   StatusWords status_words;
-  bool has_warning_bit = true;            ///< statusword bit 7 is a warning
-  bool warning_stops = false;             ///< a warning makes the drive stop like a fault
+  bool has_warning_bit = true;  ///< statusword bit 7 is a warning
+  bool warning_stops = false;   ///< a warning makes the drive stop like a fault
+  std::optional<ErrorText::Reaction> fault_reaction;  ///< of faults that have none of their own
   std::vector<int> quick_stop_holds;      ///< values of 605Ah after which quick stop stays active
   std::vector<NamedWrite> startup;        ///< at every boot
   std::vector<NamedWrite> before_enable;  ///< each time before enabling
