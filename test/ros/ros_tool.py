@@ -40,12 +40,21 @@ class Tool:
 
     def wait_listens(self, *topics):
         """Until its node takes these topics."""
+        return self._wait_registered(1, "listens to", topics)
+
+    def wait_tells(self, *topics):
+        """Until its node offers these topics. One that begins to listen at the same time may be told
+        of it twice, and connect twice, of which the node complains."""
+        return self._wait_registered(0, "tells", topics)
+
+    def _wait_registered(self, side, what, topics):
         master = rosgraph.Master(rospy.get_name())
 
         def met():
-            takers = dict(master.getSystemState()[1])
-            return all("/" + self.name in takers.get(topic, []) for topic in topics)
-        wait_until(met, lambda: f"{self.name} listens to {topics}\n{self.complaints()}")
+            nodes = dict(master.getSystemState()[side])
+            return all("/" + self.name in nodes.get(topic, []) for topic in topics)
+        wait_until(met, lambda: f"{self.name} {what} {topics}\n{self.complaints()}")
+        return self
 
     def wait_end(self):
         """@return exit status, negative: the signal that ended it."""

@@ -48,7 +48,7 @@ class Takers:
                    "/joint_states", "/tf", "/tf_static").wait_listens("/measured", "/tf")
         self.start("publisher", publisher, "joint_states:=measured", *own).wait_listens("/measured")
         self.start("merger", node_of("joint_state_publisher", "joint_state_publisher")
-                   ).wait_listens("/measured")
+                   ).wait_listens("/measured").wait_tells("/joint_states")
         self.start("publisher_of_merged", publisher, "tf:=merged_tf",
                    "tf_static:=merged_tf_static").wait_listens("/joint_states")
 

@@ -46,6 +46,14 @@ def measured_rows(joint):
     return [[*number, *row] for of, _, number, row, _ in MEASURED if of == joint]
 
 
+def measured_by_drive(joint):
+    """What of the simulated drive holds these values: rows of its dictionary, or monitors."""
+    rows = measured_rows(joint)
+    if joint != "shoulder":
+        return {"dictionary": rows}
+    return {"monitors": {f"{index:04X}:{sub:02X}": value for index, sub, *_, value in rows}}
+
+
 def raw_bytes(row):
     """The value of a row as SDO carries it."""
     _, kind, _, _, value = row
@@ -68,8 +76,7 @@ class Goals(DemoRobotTest):
     """One life of a robot, in the order of the names: starting costs seconds here."""
 
     OF_NODE = {"groups/arm/allow_partial_joints_goal": True}
-    OF_DRIVES = {f"axes/{joint}/simulation/with": {"dictionary": measured_rows(joint)}
-                 for joint in JOINTS}
+    OF_DRIVES = {f"axes/{joint}/simulation/with": measured_by_drive(joint) for joint in JOINTS}
 
     def end(self, client):
         """@return how a goal ended, and what it says."""
