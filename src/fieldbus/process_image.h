@@ -18,6 +18,9 @@ struct ProcessValue {
   bool fresh = false;     ///< valid, and what brings it comes as it should
 };
 
+/// What no frame brings.
+inline constexpr ProcessValue kNoValue{};
+
 /// Index into a device's process image; kNoSlot if the object is not mapped.
 using Slot = std::uint16_t;
 inline constexpr Slot kNoSlot = 0xFFFF;
@@ -29,6 +32,7 @@ class ProcessImage {
  public:
   Slot inputSlot(ObjectId object) const;   ///< object that the device sends, or kNoSlot
   Slot outputSlot(ObjectId object) const;  ///< object that the device gets, or kNoSlot
+  /// Stays where it is as long as the device does.
   const ProcessValue& input(Slot slot) const { return inputs_[slot]; }
   void setOutput(Slot slot, std::uint64_t raw) { outputs_[slot] = raw; }
   std::uint64_t output(Slot slot) const { return outputs_[slot]; }

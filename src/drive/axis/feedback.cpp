@@ -95,7 +95,7 @@ void Feedback::readFollowingError(Time now, double commanded) {
   AxisState& state = axis_.state;
   const Signal& row = signals_[SignalId::following_error];
   Time& stamp = state.stamps.following_error;
-  if (row.mapped() && signals_.image(SignalId::following_error).valid) {
+  if (row.value->valid) {
     state.following_error = signals_.read(SignalId::following_error, now, stamp);
   } else if (const auto* polled = signals_.polled(SignalId::following_error, now)) {
     state.following_error = row.conversion.toJoint(polled->raw);

@@ -27,6 +27,8 @@ inline constexpr std::size_t kSignalIds = 8;
 struct Signal {
   const ObjectSpec* spec = nullptr;  ///< nullptr: the drive has no such object
   fieldbus::Slot slot = fieldbus::kNoSlot;
+  /// What the process image holds of it, never nullptr; nothing where it is not mapped.
+  const fieldbus::ProcessValue* value = &fieldbus::kNoValue;
   Conversion conversion;
   int polled = -1;  ///< its number in the AxisPoller; -1: it is not asked for
   bool mapped() const { return slot != fieldbus::kNoSlot; }

@@ -68,6 +68,7 @@ Signal Signals::make(const AxisConfig& config, const ObjectSpec* spec, Reading r
   if (!lacking) {
     row.spec = spec;
     row.slot = image_.inputSlot(spec->id);
+    if (row.mapped()) row.value = &image_.input(row.slot);
     const auto conversion = Conversion::create(*spec, *config.profile, config.geometry);
     if (conversion) {
       row.conversion = *conversion;

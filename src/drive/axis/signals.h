@@ -25,13 +25,13 @@ class Signals {
   std::vector<ShownSignal> shown(Time now) const;
 
   /// Has come, and in time. @pre it is mapped
-  bool fresh(SignalId id) const { return image_.fresh((*this)[id].slot); }
+  bool fresh(SignalId id) const { return (*this)[id].value->fresh; }
   /// What the process image holds of it. @pre it is mapped
-  const fieldbus::ProcessValue& image(SignalId id) const { return image_.input((*this)[id].slot); }
+  const fieldbus::ProcessValue& image(SignalId id) const { return *(*this)[id].value; }
   /// The raw value of a row that is mapped or asked for; none where it is unknown or too old.
   const fieldbus::ProcessValue* told(const Signal& row, Time now) const {
-    if (!row.mapped()) return poller_.value(row.polled, now);
-    return image_.fresh(row.slot) ? &image_.input(row.slot) : nullptr;
+    if (row.value->fresh) return row.value;
+    return row.mapped() ? nullptr : poller_.value(row.polled, now);
   }
   const fieldbus::ProcessValue* told(SignalId id, Time now) const { return told((*this)[id], now); }
   /// The same in joint units; NaN where it is unknown. @param stamp of the value, if it is known
