@@ -40,17 +40,20 @@ Runaway::Runaway(AxisCore& axis)
 void Runaway::look(Time now) {
   look_at_ = now + watch_.window();
   const AxisState& state = axis_.state();
+  const SetPoint& sent = axis_.generator().sent();
   const bool moved = std::exchange(zero_changes_, state.zero_changes) != state.zero_changes;
-  if (moved || !state.feedback_valid) return watch_.forget();
+  // An effort may have made it faster just before another mode brakes it.
+  const bool other = std::exchange(kind_, sent.kind()) != sent.kind();
+  if (moved || other || !state.feedback_valid) return watch_.forget();
   if (!axis_.inOperation()) return lookAtStop(now);
   watches_stop_ = let_go_ = false;
   if (!state.internal_limit) {
     limited_at_ = kUnknown;
   } else if (std::isnan(limited_at_)) {
-    limited_at_ = state.position;
+    // The limit came within the last window.
+    limited_at_ = state.position - watch_.velocity() * toSeconds(watch_.window());
   }
   if (!watch_.measure(state.position, state.stamp)) return;
-  const SetPoint& sent = axis_.generator().sent();
   if (sent.kind() == SetPointKind::stream && watch_.follows(sent.velocity())) return;
   const RunawayWatch::Led where = led(now);
   if (watch_.runsAway(where)) stop(where, now);

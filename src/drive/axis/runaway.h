@@ -5,6 +5,7 @@
 
 #include "drive/axis/axis.h"
 #include "drive/axis/runaway_watch.h"
+#include "drive/axis/set_point.h"
 
 namespace cia402::drive {
 
@@ -33,11 +34,12 @@ class Runaway {
   AxisCore& axis_;
   Time look_at_{};  ///< when it looks again
   RunawayWatch watch_;
-  double limited_at_ = kUnknown;    ///< where a limit of the drive came to hold it, rad or m
-  Time settled_{};                  ///< the drive had not come to its goal then
-  bool watches_stop_ = false;       ///< a quick stop, or a fault reaction, has begun
-  bool let_go_ = false;             ///< the power was to be off
-  std::uint32_t zero_changes_ = 0;  ///< of the positions that it has seen
+  double limited_at_ = kUnknown;  ///< where a limit of the drive came to hold it, rad or m
+  Time settled_{};                ///< the drive had not come to its goal then
+  SetPointKind kind_ = SetPointKind::none;  ///< of the set-points that it has seen
+  bool watches_stop_ = false;               ///< a quick stop, or a fault reaction, has begun
+  bool let_go_ = false;                     ///< the power was to be off
+  std::uint32_t zero_changes_ = 0;          ///< of the positions that it has seen
 };
 
 }  // namespace cia402::drive
