@@ -20,6 +20,10 @@ constexpr Duration kSettles{std::chrono::seconds(1)};
 constexpr double kOfSearch = 2.0;
 constexpr double kAnySpeed = std::numeric_limits<double>::infinity();
 
+constexpr char kRemedy[] =
+    "See that the motor's phases and its encoder count the same way (the drive's setting of the "
+    "direction), that the load does not drag it along, and that torque limits let it hold that";
+
 std::string speedText(double velocity, const AxisConfig& config) {
   return number(velocity) + (config.geometry.prismatic() ? " m/s" : " rad/s");
 }
@@ -118,14 +122,13 @@ void Runaway::stop(const RunawayWatch::Led& led, Time now) {
   } else if (led.velocity != 0.0) {
     to = "it is to turn at " + speedText(led.velocity, config);
   } else if (std::isfinite(led.speed) && led.speed > 0.0) {
-    to = "may go no faster than " + speedText(led.speed, config) + " here";
+    to = "it may go no faster than " + speedText(led.speed, config) + " here";
   }
   const std::string text = axis_.who() + ": the motor runs away: it moves at " +
                            speedText(watch_.velocity(), config) + ", faster and faster, but " + to +
                            ". Quick stop is commanded, and its power is switched off if that does "
-                           "not brake it. See that the motor's phases and its encoder count the "
-                           "same way (the drive's setting of the direction), that the load does "
-                           "not drag it along, and that torque limits let it hold that";
+                           "not brake it. " +
+                           kRemedy;
   watch_.beginStop(now, true);
   watches_stop_ = true;
   axis_.setGoal(Goal::quick_stop);
@@ -135,7 +138,8 @@ void Runaway::stop(const RunawayWatch::Led& led, Time now) {
 void Runaway::letGo(Time now) {
   axis_.notices().fail(axis_.who() + ": the quick stop does not brake the motor, which moves at " +
                        speedText(watch_.velocity(), axis_.config()) +
-                       ": its power is switched off, so that it coasts, unless a brake holds it");
+                       ": its power is switched off, so that it coasts, unless a brake holds it. " +
+                       kRemedy);
   axis_.switchOff();
   watch_.beginStop(now, true);
   let_go_ = true;
