@@ -85,11 +85,8 @@ TEST_F(Sv660c, DisablingEndsAsItsOptionSays) {
     bench.write(0x605C, 0, option.code, 2);
     bench.write(0x6084, 0, 16777216, 4);
     bench.write(0x6085, 0, 67108864, 4);
-    mode(3);
-    enable();
-    bench.write(0x60FF, 0, 16777216, 4);
-    bench.run(ms(1500));
     const auto truth = [this] { return bench.drive->truth(bench.now); };
+    turnTwicePerSecond();
     ASSERT_NEAR(truth().velocity_turns, 2.0, 1e-3) << option.code;
     const double from = truth().position_turns;
     control(0x07);
@@ -121,11 +118,8 @@ TEST_F(Sv660c, AFaultEndsByTheDynamicBrakeWhereItsOptionSaysSo) {
         Option{"position_command", 0x605E, 0, 0xFFFF, 0.0060},
         Option{"position_command", 0x605E, 0, 4, 0.0060}}) {
     bench.write(option.object, option.sub, option.code, 2);
-    mode(3);
-    enable();
-    bench.write(0x60FF, 0, 16777216, 4);
-    bench.run(ms(1500));
     const auto truth = [this] { return bench.drive->truth(bench.now); };
+    turnTwicePerSecond();
     ASSERT_NEAR(truth().velocity_turns, 2.0, 1e-3) << option.code;
     const double from = truth().position_turns;
     ASSERT_TRUE(bench.drive->inject(option.fault, bench.now));

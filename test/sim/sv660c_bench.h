@@ -29,6 +29,13 @@ struct Sv660cBench : testing::Test {
     control(0x0F);
     bench.run(ms(300));  // H02.09
   }
+  /// Enables pv, and waits until the motor turns evenly.
+  void turnTwicePerSecond() {
+    mode(3);
+    enable();
+    bench.write(0x60FF, 0, 16777216, 4);
+    bench.run(ms(1500));
+  }
 };
 
 }  // namespace cia402::sim

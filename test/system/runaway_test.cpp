@@ -129,18 +129,5 @@ TEST(RunawaySearch, IsLetGo) {
   EXPECT_NEAR(scene.velocity("joint"), 0.0, 1e-3);
 }
 
-// An effort made it faster just before the mode that brakes has it: no window of before counts.
-TEST(RunawayAfterAnEffort, IsNoneWhereItsBrakeBegins) {
-  for (Duration pushed = 8ms; pushed < 80ms; pushed += 4ms) {
-    RunawayScene scene(familyJoint({kMegmeetDm5, "8388608", "cst"}));
-    for (const Time end = scene.now() + pushed; scene.now() < end; scene.run(4ms)) {
-      (void)scene.setpoint("joint", 55.0);
-    }
-    scene.mustSucceed(ProcedureKind::halt);
-    EXPECT_THAT(scene.told(), testing::Not(HasSubstr("runs away"))) << toSeconds(pushed);
-    EXPECT_TRUE(scene.truth("joint").power_stage_on) << toSeconds(pushed);
-  }
-}
-
 }  // namespace
 }  // namespace cia402
