@@ -63,6 +63,35 @@ TEST_F(ProcedureAnswer, OfAHaltIsNoneTheWorseForAnotherStop) {
   EXPECT_TRUE(answer.success) << answer.message;
 }
 
+// The shoulder has no fault and is done at once; it falls silent while the elbow's is worked at.
+void tellsOfSilenceAtClearedFaults(Duration silence, bool is_noticed) {
+  RobotWorld world;
+  world.enable();
+  world.drives[1].fault(0x8611);
+  world.run(20ms);
+  world.drives[1].deaf_to_controlword = true;
+  const auto clearing = world.begin(ProcedureKind::clear_faults);
+  ASSERT_TRUE(world.runUntil([&] { return world.axis(0).procedure().success; }, 100ms));
+  world.drives[0].tpdo_bytes = 0;
+  world.run(silence);
+  ASSERT_EQ(world.axis(0).state().feedback_valid, !is_noticed);
+  ASSERT_TRUE(clearing->empty()) << clearing->front().message;
+  world.drives[1].deaf_to_controlword = false;
+  const Answer answer = world.wait(clearing);
+  EXPECT_FALSE(answer.success);
+  EXPECT_THAT(answer.message,
+              HasSubstr("shoulder: clear_faults had succeeded, but it gives no fresh statusword "
+                        "and position any more"));
+}
+
+TEST(ProcedureAnswerOfClearedFaults, TellsOfAnAxisThatFellSilentMeanwhile) {
+  tellsOfSilenceAtClearedFaults(200ms, true);
+}
+
+TEST(ProcedureAnswerOfClearedFaults, WaitsForAnAxisThatHasJustFallenSilent) {
+  tellsOfSilenceAtClearedFaults(12ms, false);
+}
+
 TEST_F(ProcedureAnswer, OfARecoverThatLeavesTheAxisAloneComesAtOnce) {
   const auto recovering = world.begin(ProcedureKind::recover, "elbow");
   ASSERT_EQ(recovering->size(), 1u);

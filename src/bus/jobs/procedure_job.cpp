@@ -11,6 +11,13 @@
 namespace cia402::bus {
 namespace {
 
+/// What is told of an axis as it is, and not of what it does, takes its word.
+bool tellsWhatItIs(drive::ProcedureKind kind) {
+  using drive::ProcedureKind;
+  return kind == ProcedureKind::clear_faults || kind == ProcedureKind::set_mode ||
+         kind == ProcedureKind::home || kind == ProcedureKind::set_position;
+}
+
 std::string motionOf(const drive::AxisState& state) {
   if (!state.feedback_valid) return "nothing tells whether it stands";
   if (std::isnan(state.velocity)) return "it moves";
@@ -29,6 +36,9 @@ std::string lapse(const drive::ProcedureRequest& request, const drive::Axis& axi
                                 : began + "but ";
   const bool enabled = state.state == drive::State::operation_enabled;
   const std::string now = std::string("it is ") + toString(state.state);
+  if (tellsWhatItIs(request.kind) && !state.feedback_valid) {
+    return cause + "it gives no fresh statusword and position any more";
+  }
   switch (request.kind) {
     case ProcedureKind::recover:
       return axis.obstacle();
@@ -207,7 +217,8 @@ void ProcedureJob::judge() {
 /// What is told of several axes is told of all by news: one that has been silent of late shows soon
 /// what became of it, or its feedback is stale.
 bool ProcedureJob::awaitsNews(Time now) const {
-  if (entries_.size() == 1 || !enables(request_.kind)) return false;
+  if (entries_.size() == 1) return false;
+  if (!enables(request_.kind) && !tellsWhatItIs(request_.kind)) return false;
   return std::any_of(entries_.begin(), entries_.end(), [&](const Entry& entry) {
     const drive::Axis& axis = *entry.axis;
     return entry.stage == Stage::succeeded && axis.state().feedback_valid && !axis.heardLately(now);
