@@ -78,6 +78,26 @@ TEST_F(AxisPollerTest, EachValueCarriesTheTimeOfItsAnswerAndIsUnknownOnceItIsToo
   pass(AxisPoller::kStale - (now - answered), kVelocity);
   EXPECT_EQ(poller.value(item, answered + AxisPoller::kStale)->stamp, answered);
   EXPECT_EQ(poller.value(item, answered + AxisPoller::kStale + 1ms), nullptr);
+  EXPECT_TRUE(poller.value(item).fresh) << "where it stays for those who look in each cycle";
+  pass(8ms, kVelocity);
+  EXPECT_FALSE(poller.value(item).fresh);
+  drive.unanswered_reads.clear();
+  pass(2s, kVelocity);
+  EXPECT_TRUE(poller.value(item).fresh) << "it is asked for again";
+}
+
+TEST_F(AxisPollerTest, WhatSomebodyElseHasReadIsFreshForAsLong) {
+  const int item = poller.add(velocity);
+  drive.unanswered_reads.insert(kVelocity);
+  pass(100ms, kVelocity);
+  EXPECT_FALSE(poller.value(item).fresh);
+  poller.put(item, 9, now);
+  EXPECT_TRUE(poller.value(item).fresh);
+  EXPECT_EQ(poller.value(item).raw, 9u);
+  pass(AxisPoller::kStale, kVelocity);
+  EXPECT_TRUE(poller.value(item).fresh);
+  pass(8ms, kVelocity);
+  EXPECT_FALSE(poller.value(item).fresh);
 }
 
 TEST_F(AxisPollerTest, OfMappedObjectsThoseAreReadThatAreOnlyLookedAt) {

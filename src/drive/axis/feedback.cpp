@@ -58,7 +58,7 @@ void Feedback::readState(Time now, bool handing_over) {
     unmet_ = axis_.profile().supervision.unmet(statusword, state.state == State::operation_enabled);
   }
   if (state.state != State::unknown) known_state_ = now;
-  readMode(now);
+  readMode();
   state.target_reached =
       state.mode != nullptr && !handing_over && bitSet(statusword, state.mode->target_reached_bit);
 }
@@ -84,10 +84,10 @@ void Feedback::readMotion(Time now, double commanded) {
     standstill_.update(joint, now - axis_.image.interval(row.slot, axis_.config.cycle));
   }
   state.stamp = position.stamp;
-  state.velocity = signals_.read(SignalId::velocity, now, state.stamps.velocity);
-  state.effort = signals_.read(SignalId::effort, now, state.stamps.effort);
+  state.velocity = signals_.read(SignalId::velocity, state.stamps.velocity);
+  state.effort = signals_.read(SignalId::effort, state.stamps.effort);
   readFollowingError(now, commanded);
-  readDigitalInputs(now);
+  readDigitalInputs();
 }
 
 /// By the drive where it tells it, else by what is commanded.
@@ -96,7 +96,7 @@ void Feedback::readFollowingError(Time now, double commanded) {
   const Signal& row = signals_[SignalId::following_error];
   Time& stamp = state.stamps.following_error;
   if (row.value->valid) {
-    state.following_error = signals_.read(SignalId::following_error, now, stamp);
+    state.following_error = signals_.read(SignalId::following_error, stamp);
   } else if (const auto* polled = signals_.polled(SignalId::following_error, now)) {
     state.following_error = row.conversion.toJoint(polled->raw);
     stamp = polled->stamp;
@@ -106,18 +106,18 @@ void Feedback::readFollowingError(Time now, double commanded) {
   }
 }
 
-void Feedback::readDigitalInputs(Time now) {
-  const fieldbus::ProcessValue* told = signals_.told(SignalId::digital_inputs, now);
+void Feedback::readDigitalInputs() {
+  const fieldbus::ProcessValue* told = signals_.told(SignalId::digital_inputs);
   AxisState& state = axis_.state;
   state.digital_inputs_valid = told != nullptr;
   state.digital_inputs = told != nullptr ? static_cast<std::uint32_t>(told->raw) : 0;
   if (told != nullptr) state.stamps.digital_inputs = told->stamp;
 }
 
-void Feedback::readMode(Time now) {
+void Feedback::readMode() {
   AxisState& state = axis_.state;
   const Signal& row = signals_[SignalId::mode_display];
-  if (const auto* shown = signals_.told(row, now)) {
+  if (const auto* shown = signals_.told(row)) {
     state.stamps.mode = shown->stamp;
     const bool same = shown_mode_ && shown->raw == shown_raw_ && state.mode == &mode_.spec();
     if (!same) showMode(shown->raw);
@@ -149,7 +149,7 @@ void Feedback::showMode(std::uint64_t raw) {
 
 void Feedback::putShownMode(std::uint64_t raw, Time now) {
   signals_.put(SignalId::mode_display, raw, now);
-  if (!signals_[SignalId::mode_display].mapped()) readMode(now);
+  if (!signals_[SignalId::mode_display].mapped()) readMode();
 }
 
 double Feedback::positionBy(const ObjectSpec& object, std::uint64_t raw) const {

@@ -98,8 +98,8 @@ class Feedback {
   void readMotion(Time now, double commanded);
   void readFollowingError(Time now, double commanded);
   void readState(Time now, bool handing_over);
-  void readDigitalInputs(Time now);
-  void readMode(Time now);
+  void readDigitalInputs();
+  void readMode();
   void showMode(std::uint64_t raw);
 
   AxisBasis& axis_;

@@ -1,7 +1,6 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #include "drive/axis/poller.h"
 
-#include <algorithm>
 #include <utility>
 
 namespace cia402::drive {
@@ -23,21 +22,23 @@ void AxisPoller::look(int item) {
   if (!shown.for_looks || shown.refused) return;
   shown.wanted = true;
   next_ = std::min(next_, earliest_);
+  wakeBy(next_);
 }
 
 void AxisPoller::advance(fieldbus::ObjectAccess& objects, Time now) {
-  if (items_.empty()) return;
-  if (ticket_) {
-    if (!ticket_->done()) return;
+  forgetOld(now);
+  if (ticket_ && ticket_->done()) {
     Item& item = items_[current_];
     if (ticket_->ok() && ticket_->data().size() <= 8) {
-      item.value = {fieldbus::toUnsigned(ticket_->data()), now, true, true};
+      store(item, fieldbus::toUnsigned(ticket_->data()), now);
     } else if (ticket_->failure() == fieldbus::Transfer::Failure::aborted_by_server) {
       item.refused = true;
     }
     ticket_.reset();
   }
+  if (ticket_) return;
   if (now >= next_ && objects.idle()) ask(objects, now);
+  if (!ticket_) wakeBy(next_);
 }
 
 void AxisPoller::ask(fieldbus::ObjectAccess& objects, Time now) {
@@ -53,17 +54,32 @@ void AxisPoller::ask(fieldbus::ObjectAccess& objects, Time now) {
   next_ = kNever;
 }
 
+void AxisPoller::store(Item& item, std::uint64_t raw, Time now) {
+  item.value = {raw, now, true, true};
+  wakeBy(now + item.life() + Duration(1));
+}
+
+void AxisPoller::forgetOld(Time now) {
+  wake_ = kNever;
+  for (Item& item : items_) {
+    if (!item.value.fresh) continue;
+    const Time old = item.value.stamp + item.life();
+    item.value.fresh = now <= old;
+    if (item.value.fresh) wakeBy(old + Duration(1));
+  }
+}
+
 void AxisPoller::reset() {
   for (Item& item : items_) {
-    item.value.valid = false;
+    item.value.valid = item.value.fresh = false;
     item.refused = false;
   }
   ticket_.reset();
-  next_ = earliest_ = Time{};
+  next_ = earliest_ = wake_ = Time{};
 }
 
 void AxisPoller::put(int item, std::uint64_t raw, Time now) {
-  if (item >= 0) items_[static_cast<std::size_t>(item)].value = {raw, now, true, true};
+  if (item >= 0) store(items_[static_cast<std::size_t>(item)], raw, now);
 }
 
 }  // namespace cia402::drive

@@ -1,9 +1,10 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
+#include <deque>
 #include <string>
-#include <vector>
 
 #include "drive/axis/signal.h"
 #include "fieldbus/device.h"
@@ -32,20 +33,23 @@ class AxisPoller {
   /// @param item of add(), not -1
   void look(int item);
   /// Is there anything for advance() to do?
-  bool due(Time now) const { return ticket_ ? ticket_->done() : now >= next_ && !items_.empty(); }
-  /// Takes an answer that has come and asks for the next value.
+  bool due(Time now) const { return now >= wake_ || (ticket_ && ticket_->done()); }
+  /// Takes an answer that has come and asks for the next value; what is too old is fresh no more.
   void advance(fieldbus::ObjectAccess& objects, Time now);
   /// The device lost its state: nothing is known any more.
   void reset();
   /// Takes a value that somebody else has read.
   void put(int item, std::uint64_t raw, Time now);
+  /// What is known of an item, in a place that stays; fresh unless advance() has found it too old.
+  /// @param item of add(), not -1
+  const fieldbus::ProcessValue& value(int item) const {
+    return items_[static_cast<std::size_t>(item)].value;
+  }
   /// The value of an item, none where it is unknown or too old. @param item of add(); -1: no value.
   const fieldbus::ProcessValue* value(int item, Time now) const {
     if (item < 0) return nullptr;
     const Item& asked = items_[static_cast<std::size_t>(item)];
-    if (!asked.value.valid) return nullptr;
-    return now - asked.value.stamp <= (asked.for_looks ? kStaleLook : kStale) ? &asked.value
-                                                                              : nullptr;
+    return asked.value.fresh && now <= asked.value.stamp + asked.life() ? &asked.value : nullptr;
   }
 
  private:
@@ -57,14 +61,19 @@ class AxisPoller {
     bool for_looks = false, wanted = true;
 
     bool due() const { return wanted && !refused; }
+    Duration life() const { return for_looks ? kStaleLook : kStale; }
   };
   void ask(fieldbus::ObjectAccess& objects, Time now);
+  void store(Item& item, std::uint64_t raw, Time now);
+  void forgetOld(Time now);
+  void wakeBy(Time time) { wake_ = std::min(wake_, time); }
 
-  std::vector<Item> items_;
+  std::deque<Item> items_;  ///< others keep their places
   std::size_t current_ = 0;
   fieldbus::Ticket ticket_;
   Time next_{};
   Time earliest_{};  ///< of the next request, after the last one
+  Time wake_{};      ///< when advance() has something to do though no answer comes
 };
 
 }  // namespace cia402::drive

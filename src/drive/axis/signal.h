@@ -23,11 +23,12 @@ enum class SignalId : std::uint8_t {
 };
 inline constexpr std::size_t kSignalIds = 8;
 
-/// A value that the drive tells: by its process image where it is mapped, else it is asked for.
+/// A value that the drive tells: by its process image where it is mapped, else it may be asked for.
 struct Signal {
   const ObjectSpec* spec = nullptr;  ///< nullptr: the drive has no such object
   fieldbus::Slot slot = fieldbus::kNoSlot;
-  /// What the process image holds of it, never nullptr; nothing where it is not mapped.
+  /// What the process image holds of it where it is mapped, else what is asked for without end;
+  /// never nullptr, nothing where neither brings it.
   const fieldbus::ProcessValue* value = &fieldbus::kNoValue;
   Conversion conversion;
   int polled = -1;  ///< its number in the AxisPoller; -1: it is not asked for

@@ -77,6 +77,7 @@ Signal Signals::make(const AxisConfig& config, const ObjectSpec* spec, Reading r
     }
   }
   row.polled = poller_.add(row, reading);
+  if (row.polled >= 0 && reading == Reading::always) row.value = &poller_.value(row.polled);
   return row;
 }
 
@@ -95,7 +96,7 @@ void Signals::look() {
 std::vector<ShownSignal> Signals::shown(Time now) const {
   std::vector<ShownSignal> all;
   for (const Signal& row : named_) {
-    const fieldbus::ProcessValue* value = travels(row) ? told(row, now) : nullptr;
+    const fieldbus::ProcessValue* value = travels(row) ? told(row) : nullptr;
     if (value == nullptr) value = poller_.value(row.polled, now);
     ShownSignal shown;
     shown.object = row.spec;

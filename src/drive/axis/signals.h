@@ -28,16 +28,16 @@ class Signals {
   bool fresh(SignalId id) const { return (*this)[id].value->fresh; }
   /// What the process image holds of it. @pre it is mapped
   const fieldbus::ProcessValue& image(SignalId id) const { return *(*this)[id].value; }
-  /// The raw value of a row that is mapped or asked for; none where it is unknown or too old.
-  const fieldbus::ProcessValue* told(const Signal& row, Time now) const {
-    if (row.value->fresh) return row.value;
-    return row.mapped() ? nullptr : poller_.value(row.polled, now);
+  /// The raw value of a row that is mapped or asked for without end; none where it is unknown or
+  /// too old.
+  static const fieldbus::ProcessValue* told(const Signal& row) {
+    return row.value->fresh ? row.value : nullptr;
   }
-  const fieldbus::ProcessValue* told(SignalId id, Time now) const { return told((*this)[id], now); }
+  const fieldbus::ProcessValue* told(SignalId id) const { return told((*this)[id]); }
   /// The same in joint units; NaN where it is unknown. @param stamp of the value, if it is known
-  double read(SignalId id, Time now, Time& stamp) const {
+  double read(SignalId id, Time& stamp) const {
     const Signal& row = (*this)[id];
-    const fieldbus::ProcessValue* value = told(row, now);
+    const fieldbus::ProcessValue* value = told(row);
     if (value == nullptr) return kUnknown;
     stamp = value->stamp;
     return row.conversion.toJoint(value->raw);
@@ -50,7 +50,7 @@ class Signals {
   /// Somebody is about to look at what is only shown: it is asked for once more where it does not
   /// travel.
   void look();
-  /// Asks for what is due.
+  /// Asks for what is due; what was asked for too long ago is fresh no more.
   void poll(Time now) {
     if (poller_.due(now)) poller_.advance(device_.objects(), now);
   }
