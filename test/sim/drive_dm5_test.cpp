@@ -44,6 +44,32 @@ TEST(DriveDm5, IsNotEnabledWhileItsMotorTurnsFasterThan100Rpm) {
   EXPECT_TRUE(b.drive->truth(b.now).power_stage_on);
 }
 
+// "Same in every mode" [L1940-1950]; whether what it reads back changes its sign is not printed.
+TEST(DriveDm5, TurnsTheSignOfTargetsByThePolarity) {
+  const auto speedBy = [](std::uint32_t mode, std::uint32_t polarity) {
+    Dm5Bench b;
+    b.write(0x607E, 0, polarity, 1);
+    b.write(0x6060, 0, mode, 1);
+    b.write(0x6081, 0, 8388608, 4);
+    b.write(0x60FF, 0, 8388608, 4);
+    b.write(0x6071, 0, mode == 4 ? 500 : 0, 2);
+    b.write(0x607A, 0, 10 * 8388608, 4);
+    b.enable();
+    b.run(ms(600));
+    if (mode == 1) b.control(0x001F);
+    b.run(ms(1000));
+    return b.drive->truth(b.now).velocity_turns;
+  };
+  struct Case {
+    std::uint32_t mode, bit;
+  };
+  for (const Case& tested : {Case{1, 0x80}, Case{3, 0x40}, Case{4, 0x20}}) {
+    EXPECT_GT(speedBy(tested.mode, 0), 0.5) << tested.mode;
+    EXPECT_LT(speedBy(tested.mode, tested.bit), -0.5) << tested.mode;
+    EXPECT_GT(speedBy(tested.mode, 0xE0 & ~tested.bit), 0.5) << tested.mode << ": others' bits";
+  }
+}
+
 /// Bits 0 to 6 of the statusword but 4.
 unsigned stateOf(Dm5Bench& b) { return b.status() & 0x6FU; }
 

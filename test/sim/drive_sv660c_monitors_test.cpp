@@ -33,6 +33,103 @@ TEST_F(Sv660cMonitor, ShowsHowTheMotorTurns) {
   EXPECT_EQ(signedNumber(0x12), static_cast<std::int32_t>(bench.read(0x6063)));
 }
 
+// H0b.01 in rpm, H0b.13 and H0b.64 in user units, H0b.15 in encoder counts [L8309-8975].
+TEST_F(Sv660cMonitor, ShowsWhatIsCommanded) {
+  bench.write(0x6091, 1, 4194304, 4);  // encoder counts a user unit: two of them are a turn
+  bench.write(0x607F, 0, 20, 4);
+  mode(3);
+  enable();
+  bench.write(0x6083, 0, 4, 4);  // 2 turns/s2
+  bench.write(0x60FF, 0, static_cast<std::uint32_t>(-4), 4);
+  bench.run(ms(500));
+  EXPECT_NEAR(static_cast<std::int16_t>(bench.read(0x200B, 0x02)), -60, 3) << "half way";
+  bench.run(ms(1500));
+  EXPECT_EQ(static_cast<std::int16_t>(bench.read(0x200B, 0x02)), -120);
+  const std::uint32_t before = bench.read(0x200B, 0x0E);
+  bench.run(ms(3000));
+  const std::uint32_t passed = bench.read(0x200B, 0x0E) - before;
+  EXPECT_NEAR(static_cast<std::int32_t>(passed), -12, 1) << "3 s with 4 user units a second";
+  EXPECT_EQ(bench.read(0x200B, 0x41), bench.read(0x200B, 0x0E));
+}
+
+// H0b.15 in encoder counts, H0b.53 in user units, two encoder counts each here [L8439, L8871].
+TEST_F(Sv660cMonitor, ShowsByHowMuchTheMotorIsBehind) {
+  bench.write(0x6091, 1, 2, 4);
+  bench.write(0x6081, 0, 83886080, 4);
+  bench.write(0x6083, 0, 4194304, 4);  // a turn/s2
+  mode(1);
+  enable();
+  bench.write(0x607A, 0, 41943040, 4);
+  control(0x0F);
+  control(0x1F);
+  bench.run(ms(1000));
+  const auto units = static_cast<std::int32_t>(bench.read(0x200B, 0x36));
+  EXPECT_GT(units, 100) << "while it accelerates evenly";
+  EXPECT_NEAR(static_cast<std::int32_t>(bench.read(0x200B, 0x10)), 2 * units, 0.01 * units)
+      << "read some ms apart";
+  bench.run(ms(20000));
+  EXPECT_NEAR(static_cast<std::int32_t>(bench.read(0x200B, 0x10)), 0, 2) << "at its target";
+}
+
+// 0.1 degrees of one of H00.17 pairs of poles, 5 from the factory [L2105, L8397-8415].
+TEST_F(Sv660cMonitor, ShowsTheElectricalAngle) {
+  bench.write(0x607F, 0, 838860800, 4);
+  mode(3);
+  enable();
+  bench.write(0x60FF, 0, 838861, 4);  // a tenth of a turn in a second
+  const auto degrees = [this] { return (bench.read(0x200B, 0x0B) & 0xFFFF) * 0.1; };
+  double last = degrees(), passed = 0.0;
+  const double from = bench.drive->truth(bench.now).position_turns;
+  for (int i = 0; i < 100; ++i) {
+    bench.run(ms(100));
+    const double now = degrees();
+    EXPECT_LT(now, 360.0);
+    passed += now - last + (now < last - 180.0 ? 360.0 : 0.0);
+    last = now;
+  }
+  const double turned = bench.drive->truth(bench.now).position_turns - from;
+  EXPECT_GT(turned, 0.8);
+  EXPECT_NEAR(passed, turned * 5 * 360.0, 1.0);
+}
+
+// H0b.03: 1 where the input conducts; H0b.05 [L8335-8362].
+TEST_F(Sv660cMonitor, ShowsTheLevelsOfItsTerminals) {
+  EXPECT_EQ(bench.read(0x200B, 0x04) & 0xFFFF, 0U);
+  bench.drive->setInput(18, true, bench.now);
+  EXPECT_EQ(bench.read(0x200B, 0x04) & 0xFFFF, 4U) << "DI3";
+  bench.write(0x2004, 0x17, 31, 2);  // by 2031:05
+  bench.write(0x2031, 0x05, 1, 2);
+  const std::uint32_t on = bench.read(0x200B, 0x06) & 0xFFFF;
+  EXPECT_EQ(on, (bench.drive->truth(bench.now).outputs >> 16) & 0x1F);
+  bench.write(0x2031, 0x05, 0, 2);
+  EXPECT_EQ((bench.read(0x200B, 0x06) & 0xFFFF) ^ on, 1U) << "DO1";
+}
+
+// H0b.37, H0b.40, H0b.41 of the past fault that H0b.33 selects [L8619-8763].
+TEST_F(Sv660cMonitor, KeepsHowItWasAtAnAlarm) {
+  bench.write(0x607F, 0, 838860800, 4);
+  mode(3);
+  enable();
+  bench.write(0x60FF, 0, 8388608, 4);
+  bench.run(ms(2000));
+  bench.drive->setInput(18, true, bench.now);
+  ASSERT_TRUE(bench.drive->inject("overspeed", bench.now));
+  bench.drive->setInput(18, false, bench.now);
+  bench.run(ms(2000));
+  const auto of = [this](std::uint8_t sub) { return bench.read(0x200B, sub) & 0xFFFF; };
+  EXPECT_EQ(of(0x26), 60U) << "rpm then";
+  EXPECT_EQ(of(0x01), 0U) << "and now";
+  EXPECT_EQ(of(0x29), of(0x1B));
+  EXPECT_EQ(of(0x2A), 4U);
+  EXPECT_EQ(of(0x04), 0U);
+  ASSERT_TRUE(bench.drive->inject("overcurrent", bench.now));
+  EXPECT_EQ(of(0x26), 0U);
+  bench.write(0x200B, 0x22, 1, 2);
+  EXPECT_EQ(of(0x26), 60U) << "the one before";
+  bench.write(0x200B, 0x22, 7, 2);
+  EXPECT_EQ(of(0x29), 0U) << "there was none";
+}
+
 // Supply and temperatures are no part of the simulation: they stay within what the pages allow.
 TEST_F(Sv660cMonitor, HasASupplyAndTemperatures) {
   const double link = (bench.read(0x200B, 0x1B) & 0xFFFF) * 0.1;

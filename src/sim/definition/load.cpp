@@ -91,6 +91,7 @@ void readDefinition(DefinitionReader& reader, bool extends, DriveDefinition& out
   readClamped(reader, out.dictionary, out.own.clamped);
   reader.section("maker_states", [&](DefinitionReader& r) { readMakerStates(r, out.own.states); });
   readMonitors(reader, out.own.monitors);
+  readAtAlarm(reader, out.own.monitors);
   reader.section("counters", [&](DefinitionReader& r) { readCounters(r, out.own.monitors); });
   reader.read("full_pulse_width", out.own.full_pulse_width, 0.0, 1000.0);
   reader.section("memory", [&](DefinitionReader& r) { readMemory(r, out.memory); });

@@ -47,6 +47,19 @@ std::vector<fieldbus::ObjectId> readStretch(DefinitionReader& reader, const char
   return objects;
 }
 
+/// `bits`: the first and the last one.
+void readBits(DefinitionReader& reader, MonitorDefinition& out) {
+  std::vector<std::int64_t> ends;
+  reader.list("bits",
+              [&](const yaml::Value& value) { ends.push_back(value.integer(0, 63).value_or(0)); });
+  if (ends.empty()) return;
+  if (ends.size() != 2 || ends[0] > ends[1]) {
+    return reader.problem("bits", "must be the first and the last one, like [16, 20]");
+  }
+  out.first_bit = static_cast<unsigned>(ends[0]);
+  out.bits = static_cast<unsigned>(ends[1] - ends[0] + 1);
+}
+
 }  // namespace
 
 void readMakerStates(DefinitionReader& reader, MakerStates& out) {
@@ -93,8 +106,9 @@ void readEffects(DefinitionReader& reader, Effects& out) {
 void readMonitors(DefinitionReader& reader, MonitorsDefinition& out) {
   using Shows = MonitorDefinition::Shows;
   static const std::vector<std::pair<const char*, Shows>> kShows = {
-      {"speed", Shows::speed}, {"torque", Shows::torque}, {"load", Shows::load},
-      {"angle", Shows::angle}, {"time", Shows::time},     {"total_time", Shows::total_time}};
+      {"speed", Shows::speed},    {"torque", Shows::torque}, {"load", Shows::load},
+      {"angle", Shows::angle},    {"time", Shows::time},     {"total_time", Shows::total_time},
+      {"outputs", Shows::outputs}};
   reader.each("monitors", [&](const std::string& key, const yaml::Value& value) {
     const auto id = fieldbus::parseObjectId(key);
     if (!id) return reader.problem("monitors", "'" + key + "' is no object like \"200B:1B\"");
@@ -103,6 +117,11 @@ void readMonitors(DefinitionReader& reader, MonitorsDefinition& out) {
       DefinitionReader row(value);
       row.read("shows", monitor.shows, kShows);
       row.read("scale", monitor.scale, -1e9, 1e9);
+      readObject(row, "object", monitor.object);
+      readObject(row, "less", monitor.less);
+      readObject(row, "periods", monitor.periods);
+      if (monitor.object) monitor.shows = Shows::object;
+      readBits(row, monitor);
     } else if (const std::string text = value.text().value_or(""); text.find(':') < text.size()) {
       monitor.shows = Shows::object;
       monitor.object = fieldbus::parseObjectId(text);
@@ -111,6 +130,19 @@ void readMonitors(DefinitionReader& reader, MonitorsDefinition& out) {
       monitor.scale = value.number({-1e9, 1e9, false}).value_or(0.0);
     }
     out.shown[*id] = monitor;
+  });
+}
+
+void readAtAlarm(DefinitionReader& reader, MonitorsDefinition& out) {
+  reader.each("at_alarm", [&](const std::string& key, const yaml::Value& value) {
+    const auto shows = fieldbus::parseObjectId(key);
+    const auto shown = fieldbus::parseObjectId(value.text().value_or(""));
+    if (!shows || !shown) {
+      return reader.problem("at_alarm", "'" + key +
+                                            "' and its value must be objects, like "
+                                            "\"200B:26\": \"200B:01\"");
+    }
+    out.at_alarm.emplace_back(*shows, *shown);
   });
 }
 

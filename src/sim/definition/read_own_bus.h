@@ -20,6 +20,7 @@ void readMakerStates(DefinitionReader& reader, MakerStates& out);
 void readEffects(DefinitionReader& reader, Effects& out);
 /// `monitors:`, and the `counters:` section.
 void readMonitors(DefinitionReader& reader, MonitorsDefinition& out);
+void readAtAlarm(DefinitionReader& reader, MonitorsDefinition& out);
 void readCounters(DefinitionReader& reader, MonitorsDefinition& out);
 /// The `clamped:` list of such. @param dictionary where they must have a range.
 void readClamped(DefinitionReader& reader, const DictionaryTemplate& dictionary,

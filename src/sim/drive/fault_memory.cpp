@@ -16,7 +16,7 @@ FaultMemory::FaultMemory(const DriveDefinition& definition, DriveValues& values,
     : definition_(definition),
       values_(values),
       dictionary_(dictionary),
-      alarms_(values),
+      alarms_(values, dictionary, definition.own.monitors.at_alarm),
       records_(definition, dictionary),
       words_(definition, dictionary) {
   causes_.reserve(kMostCauses);

@@ -12,10 +12,14 @@ using Shows = MonitorDefinition::Shows;
 constexpr std::uint32_t kNmtId = 0x000, kHeartbeatIds = 0x700, kNodeBits = 0x7F;
 constexpr std::uint8_t kNmtCommands[] = {1, 2, 128, 129, 130};
 
+/// The lowest bits of it.
+std::uint64_t cut(std::uint64_t number, unsigned bits) {
+  return number & (bits >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << bits) - 1);
+}
+
 std::uint64_t bitsOf(double value, const Entry& entry) {
-  const unsigned width = widthBits(entry.type);
-  const auto number = static_cast<std::uint64_t>(static_cast<std::int64_t>(std::llround(value)));
-  return number & (width >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << width) - 1);
+  return cut(static_cast<std::uint64_t>(static_cast<std::int64_t>(std::llround(value))),
+             widthBits(entry.type));
 }
 
 }  // namespace
@@ -27,8 +31,7 @@ Monitors::Monitors(const MonitorsDefinition& definition, ObjectDictionary& dicti
     const MonitorDefinition& monitor = pair.second;
     if (monitor.shows == Shows::constant) continue;
     dictionary_.onRead(pair.first, [this, &monitor](Entry& entry) {
-      const Entry* other = monitor.object ? dictionary_.find(*monitor.object) : nullptr;
-      entry.number = other != nullptr ? other->number : bitsOf(value(monitor), entry);
+      entry.number = number(monitor, entry);
       return 0U;
     });
   }
@@ -44,9 +47,23 @@ void Monitors::start(bool power_on, Time now) {
   }
 }
 
+std::uint64_t Monitors::numberOf(const std::optional<fieldbus::ObjectId>& object) const {
+  const Entry* entry = object ? dictionary_.find(*object) : nullptr;
+  return entry != nullptr ? static_cast<std::uint64_t>(asSigned(*entry)) : 0;
+}
+
+std::uint64_t Monitors::number(const MonitorDefinition& monitor, const Entry& entry) const {
+  const bool outputs = monitor.shows == Shows::outputs;
+  if (!outputs && !monitor.object) return bitsOf(value(monitor), entry);
+  const std::uint64_t whole = outputs ? core_.outputs() : numberOf(monitor.object);
+  return cut((whole - numberOf(monitor.less)) >> monitor.first_bit,
+             std::min(monitor.bits, widthBits(entry.type)));
+}
+
 double Monitors::value(const MonitorDefinition& monitor) const {
   const Motor& motor = core_.motion().motor();
-  const double turns = core_.motion().counter();
+  const double periods = monitor.periods ? static_cast<double>(numberOf(monitor.periods)) : 1.0;
+  const double turns = core_.motion().counter() * periods;
   switch (monitor.shows) {
     case Shows::speed:
       return motor.velocity() * monitor.scale;
@@ -62,6 +79,7 @@ double Monitors::value(const MonitorDefinition& monitor) const {
       return toSeconds(before_ + (now_ - since_)) * monitor.scale;
     case Shows::constant:
     case Shows::object:
+    case Shows::outputs:
       break;
   }
   return 0.0;

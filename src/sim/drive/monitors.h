@@ -25,6 +25,8 @@ class Monitors {
 
  private:
   double value(const MonitorDefinition& monitor) const;
+  std::uint64_t number(const MonitorDefinition& monitor, const Entry& entry) const;
+  std::uint64_t numberOf(const std::optional<fieldbus::ObjectId>& object) const;
   void count(const std::optional<fieldbus::ObjectId>& counter);
 
   const MonitorsDefinition& definition_;
