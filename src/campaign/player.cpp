@@ -26,7 +26,7 @@ Player::Player(Stage& stage, const Scene& scene, const RunOptions& options)
       proof_(session_, calls_, streams_, trajectories_, [this](Time until) { runTo(until); }) {
   stage.world().bus().setMonitor(
       [this](const can::Frame& frame, Time now) { onFrame(frame, now); });
-  stage.host().listen([this](const bus::Event& event) { session_.say("    " + event.text.str()); });
+  stage.host().listen([this](const bus::Event& event) { onEvent(event); });
 }
 
 void Player::play() {
@@ -133,6 +133,12 @@ void Player::traceFrame(const can::Frame& frame) const {
   if (!of_node && !holds(session_.stage.rpdos()) && !holds(session_.stage.tpdos())) return;
   const std::string line = can::formatLogLine({{}, "can", frame, can::Direction::unknown});
   session_.say(line.substr(line.find("can ")));
+}
+
+void Player::onEvent(const bus::Event& event) {
+  const std::string text = event.text.str();
+  if (text.find(": the motor runs away:") != std::string::npos) runaways_.push_back(text);
+  session_.say("    " + text);
 }
 
 void Player::onFrame(const can::Frame& frame, Time now) {

@@ -31,6 +31,8 @@ class Player : private Calls::Line {
   /// Of all frames on the wire with their times.
   std::uint64_t fingerprint() const { return fingerprint_; }
   std::uint64_t frames() const { return frames_; }
+  /// What the driver told of motors that run away, which none in a history does.
+  const std::vector<std::string>& runaways() const { return runaways_; }
   const Permits& permits() const { return session_.permits; }
 
  protected:
@@ -50,6 +52,7 @@ class Player : private Calls::Line {
   void calm();
   void traceFrame(const can::Frame& frame) const;
   void onFrame(const can::Frame& frame, Time now);
+  void onEvent(const bus::Event& event);
 
   const Scene& scene_;
   const RunOptions& options_;
@@ -62,6 +65,7 @@ class Player : private Calls::Line {
   DriveTrouble drives_{session_};
   Proof proof_;
   std::uint64_t fingerprint_ = 1469598103934665603U, frames_ = 0;
+  std::vector<std::string> runaways_;
   Time looked_{};
   Duration taken_{};  ///< by proofs, in which the scene's own time stands still
 };

@@ -19,6 +19,7 @@ Report run(const Scene& scene, const RunOptions& options) {
     report.problem = exception.what();
   }
   report.findings = player.findings();
+  report.runaways = player.runaways();
   report.fingerprint = player.fingerprint();
   report.frames = player.frames();
   report.simulated = stage.now().time_since_epoch();

@@ -22,7 +22,8 @@ struct Finding {
 struct Report {
   std::string problem;  ///< why the scene could not run; empty: it did
   std::vector<Finding> findings;
-  std::uint64_t fingerprint = 0;  ///< of all frames on the wire with their times
+  std::vector<std::string> runaways;  ///< what the driver told of motors that it took for such
+  std::uint64_t fingerprint = 0;      ///< of all frames on the wire with their times
   std::uint64_t frames = 0;
   Duration simulated{};
 };

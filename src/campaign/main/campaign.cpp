@@ -39,7 +39,7 @@ struct Options {
 struct Result {
   std::uint64_t seed = 0;
   double simulated_s = 0.0, frames = 0.0;
-  int findings = 0;
+  int findings = 0, runaways = 0;
   char text[600] = {};
 };
 
@@ -103,6 +103,7 @@ Result work(std::uint64_t seed, const Options& options) {
   result.simulated_s = toSeconds(report.simulated);
   result.frames = static_cast<double>(report.frames);
   result.findings = static_cast<int>(report.findings.size());
+  result.runaways = static_cast<int>(report.runaways.size());
   std::string text;
   // Now and then: the same seed, the same frames.
   const bool repeated =
@@ -116,6 +117,8 @@ Result work(std::uint64_t seed, const Options& options) {
   } else if (result.findings > 0) {
     text = describe(report.findings.front());
     if (options.tries > 0) text += " -> " + keep(scene, report.findings.front(), options);
+  } else if (result.runaways > 0) {
+    text = "no finding, but no motor ran away: " + report.runaways.front();
   }
   std::snprintf(result.text, sizeof result.text, "%s", text.c_str());
   return result;
@@ -140,10 +143,10 @@ class Campaign {
                        1e-6 * static_cast<double>(usage.ru_utime.tv_usec + usage.ru_stime.tv_usec);
     std::printf(
         "seeds %llu to %llu: %.2f simulated hours, %.0f per processor hour, "
-        "%.1f million frames, %d findings\n",
+        "%.1f million frames, %d motors wrongly taken for runaways, %d findings\n",
         static_cast<unsigned long long>(options_.seed),
         static_cast<unsigned long long>(options_.seed + seeds - 1), simulated_s_ / 3600.0,
-        simulated_s_ / cpu, frames_ * 1e-6, findings_);
+        simulated_s_ / cpu, frames_ * 1e-6, runaways_, findings_);
     return findings_ == 0 ? 0 : 1;
   }
 
@@ -178,7 +181,8 @@ class Campaign {
     simulated_s_ += result.simulated_s;
     frames_ += result.frames;
     findings_ += result.findings;
-    if (result.findings == 0) return;
+    runaways_ += result.runaways;
+    if (result.findings == 0 && result.runaways == 0) return;
     std::printf("seed %llu: %s\n", static_cast<unsigned long long>(result.seed), result.text);
     std::fflush(stdout);
   }
@@ -187,7 +191,7 @@ class Campaign {
   int pipe_[2] = {};
   std::map<pid_t, std::uint64_t> workers_;
   double simulated_s_ = 0.0, frames_ = 0.0;
-  int findings_ = 0;
+  int findings_ = 0, runaways_ = 0;
 };
 
 int runScene(const Options& options, const Scene& scene) {
