@@ -105,6 +105,12 @@ void checkRpdoObjects(yaml::Section& section, const AxisDraft& draft) {
     if (pdo.direction != PdoDirection::rpdo) continue;
     for (const std::string& object : pdo.objects) {
       const DriveProfile& profile = *draft.axis.profile;
+      if (const auto type = profile.find(object)->transmission) {
+        at.problem(
+            "`" + object + "` must come in an RPDO of transmission type " + std::to_string(*type) +
+            " (its `transmission` in " + drive::sourceOf(profile) +
+            "), which `pdos: none` does not have: give the axis PDOs, or `modes` without it");
+      }
       if (drive::isSetByAxis(profile, object) || drive::isSetByPeople(profile, object)) continue;
       at.problem("`" + object +
                  "` would be sent as 0 in every cycle, as nothing sets it: take it " +

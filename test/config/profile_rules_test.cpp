@@ -54,6 +54,20 @@ OwnDrive loadOwn(const OwnProfile& profile, const std::string& axis = "") {
   return loaded;
 }
 
+TEST(ProfileRules, AnObjectThatDemandsATransmissionTypeIsNotSentBySdo) {
+  const OwnProfile demanding{"", "{object: \"607A:00\", type: int32, quantity: position, pdo: rpdo",
+                             "{object: \"607A:00\", type: int32, quantity: position, pdo: rpdo, "
+                             "transmission: 1"};
+  EXPECT_EQ(loadOwn(demanding).problems.text(), "");
+  EXPECT_THAT(loadOwn(demanding, ", pdos: none").problems.text(),
+              HasSubstr("axes/a/pdos: `target_position` must come in an RPDO of transmission type "
+                        "1 (its `transmission` in profile generic_cia402), which `pdos: none` does "
+                        "not have: give the axis PDOs, or `modes` without it"));
+  EXPECT_EQ(loadOwn(demanding, ", pdos: none, mode: cyclic_velocity, modes: [cyclic_velocity]")
+                .problems.text(),
+            "");
+}
+
 TEST(ProfileRules, ThereAreAsManyPdosAsTheDriveHas) {
   const OwnDrive loaded = loadOwn({"pdo_rules: {max_rpdos: 2, max_tpdos: 3}", "", ""});
   EXPECT_EQ(loaded.problems.text(), "");

@@ -333,6 +333,28 @@ TEST(DriveProfile, AnEventDrivenTpdoThatWouldNeverComeIsRefusedWhereTheDriveSend
   EXPECT_TRUE(shipped("damiao_dm").type_255_by_timer);
 }
 
+TEST(DriveProfile, AnRpdoOfAnotherTypeThanItsObjectDemandsIsRefused) {
+  const auto with = [](const std::string& demanded, const std::string& rpdo) {
+    std::string text = changed("quantity: position, pdo: rpdo}",
+                               "quantity: position, pdo: rpdo, transmission: " + demanded + "}");
+    const std::string from = "rpdo1: [controlword, target_position]";
+    return text.replace(text.find(from), from.size(), "rpdo1: " + rpdo);
+  };
+  const std::string listed = "[controlword, target_position]";  // of type 1
+  EXPECT_EQ(problemsOf(with("1", listed)), "");
+  EXPECT_EQ(problemsOf(with("255", "{objects: " + listed + ", transmission: 255}")), "");
+  EXPECT_THAT(problemsOf(with("1", "{objects: " + listed + ", transmission: 255}")),
+              HasSubstr("pdos/rpdo1: has transmission type 255, but `target_position` must come "
+                        "with type 1 (its `transmission` in profile small)"));
+  EXPECT_THAT(problemsOf(with("252", listed)),
+              HasSubstr("objects/target_position/transmission: an RPDO has a type from 0 to 240"));
+  EXPECT_THAT(problemsOf(changed("access: ro, pdo: tpdo}",
+                                 "access: ro, pdo: tpdo, "
+                                 "transmission: 1}")),
+              HasSubstr("transmission: is for objects that can be in an RPDO"));
+  EXPECT_EQ(shipped("sv660c").find("interpolation_target")->transmission, 1) << "[15961]";
+}
+
 TEST(DriveProfile, RefusesMoreThanSixtyFourBitsInAPdo) {
   const std::string text =
       changed("[statusword, position_actual]", "[statusword, position_actual, mode_display]");

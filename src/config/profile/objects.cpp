@@ -61,6 +61,17 @@ void readAccess(yaml::Section& section, ObjectSpec& object) {
   if (object.tpdo && !object.readable) value->problem("a write-only object cannot be in a TPDO");
 }
 
+void readTransmission(yaml::Section& section, ObjectSpec& object) {
+  const auto value = section.get("transmission");
+  const auto type = value ? value->integer(0, 255) : std::nullopt;
+  if (!type) return;
+  if (!object.rpdo) return value->problem("is for objects that can be in an RPDO");
+  if (*type > 240 && *type < 254) {
+    return value->problem("an RPDO has a type from 0 to 240 (with SYNC), 254 or 255 (on events)");
+  }
+  object.transmission = static_cast<std::uint8_t>(*type);
+}
+
 void readMeaning(yaml::Section& section, ObjectSpec& object, const DriveProfile& profile) {
   if (const auto value = section.get("quantity")) {
     object.quantity = readQuantity(*value).value_or(Quantity::none);
@@ -167,6 +178,7 @@ ObjectSpec readObject(const std::string& name, const yaml::Value& value,
   readType(section, object);
   readEncoding(section, profile, object);
   readAccess(section, object);
+  readTransmission(section, object);
   readMeaning(section, object, profile);
   readRange(section, object);
   readWords(section, object);

@@ -56,6 +56,19 @@ void checkTimer(yaml::Section& section, const DriveProfile& profile,
                 ", `type_255_by_timer`): give it an `event_timer`, or take 254 (on a change)");
 }
 
+// What the drive takes at once, or at another SYNC than the others, may not be what it counts on.
+void checkDemands(const yaml::Value& pdo, const DriveProfile& profile, const PdoLayout& layout) {
+  for (const std::string& name : layout.objects) {
+    const ObjectSpec* object = profile.find(name);
+    if (layout.direction != PdoDirection::rpdo || !object->transmission) continue;
+    const unsigned demanded = *object->transmission;
+    if (demanded == layout.transmission) continue;
+    pdo.problem("has transmission type " + std::to_string(layout.transmission) + ", but `" + name +
+                "` must come with type " + std::to_string(demanded) + " (its `transmission` in " +
+                drive::sourceOf(profile) + "): give that to the PDO, or move the object");
+  }
+}
+
 // A COB-ID of a PDO: "0x1A5", "$NODEID+0x1A0", or `drive` for the drive's own.
 void readCobId(yaml::Section& section, PdoLayout& pdo) {
   const auto value = section.get("cob_id");
@@ -209,6 +222,7 @@ std::vector<PdoLayout> readPdos(const yaml::Value& value, const DriveProfile& pr
       readSyncStart(details, profile, device, *pdo);
       details.finish();
     }
+    checkDemands(entry, profile, *pdo);
     pdos.push_back(*pdo);
   }
   section.finish();

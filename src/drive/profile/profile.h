@@ -70,8 +70,9 @@ struct ObjectSpec {
   std::string high;  ///< object with the upper 32 bits of it, which are read together; or empty
   bool readable = true;
   bool writable = true;
-  bool rpdo = false;                  ///< may be mapped into an RPDO
-  bool tpdo = false;                  ///< may be mapped into a TPDO
+  bool rpdo = false;                         ///< may be mapped into an RPDO
+  bool tpdo = false;                         ///< may be mapped into a TPDO
+  std::optional<std::uint8_t> transmission;  ///< type that an RPDO with it must have; absent: any
   std::string doubt;                  ///< why it may not be mappable so, told to whoever maps it
   bool from_eds = false;              ///< the axis' EDS names it, the profile does not
   std::vector<std::string> eds_keys;  ///< further names, from the EDS (fieldbus::nameKey())
