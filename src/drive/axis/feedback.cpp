@@ -86,20 +86,20 @@ void Feedback::readMotion(Time now, double commanded) {
   state.stamp = position.stamp;
   state.velocity = signals_.read(SignalId::velocity, state.stamps.velocity);
   state.effort = signals_.read(SignalId::effort, state.stamps.effort);
-  readFollowingError(now, commanded);
+  readFollowingError(commanded);
   readDigitalInputs();
 }
 
 /// By the drive where it tells it, else by what is commanded.
-void Feedback::readFollowingError(Time now, double commanded) {
+void Feedback::readFollowingError(double commanded) {
   AxisState& state = axis_.state;
   const Signal& row = signals_[SignalId::following_error];
   Time& stamp = state.stamps.following_error;
   if (row.value->valid) {
     state.following_error = signals_.read(SignalId::following_error, stamp);
-  } else if (const auto* polled = signals_.polled(SignalId::following_error, now)) {
-    state.following_error = row.conversion.toJoint(polled->raw);
-    stamp = polled->stamp;
+  } else if (row.asked->fresh) {
+    state.following_error = row.conversion.toJoint(row.asked->raw);
+    stamp = row.asked->stamp;
   } else {
     state.following_error = commanded - state.position;
     if (!std::isnan(commanded)) stamp = state.stamp;

@@ -96,7 +96,7 @@ class Feedback {
 
  private:
   void readMotion(Time now, double commanded);
-  void readFollowingError(Time now, double commanded);
+  void readFollowingError(double commanded);
   void readState(Time now, bool handing_over);
   void readDigitalInputs();
   void readMode();

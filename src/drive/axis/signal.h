@@ -30,6 +30,8 @@ struct Signal {
   /// What the process image holds of it where it is mapped, else what is asked for without end;
   /// never nullptr, nothing where neither brings it.
   const fieldbus::ProcessValue* value = &fieldbus::kNoValue;
+  /// What was asked for beside the cycle, whether it is mapped or not; never nullptr.
+  const fieldbus::ProcessValue* asked = &fieldbus::kNoValue;
   Conversion conversion;
   int polled = -1;  ///< its number in the AxisPoller; -1: it is not asked for
   bool mapped() const { return slot != fieldbus::kNoSlot; }

@@ -77,7 +77,8 @@ Signal Signals::make(const AxisConfig& config, const ObjectSpec* spec, Reading r
     }
   }
   row.polled = poller_.add(row, reading);
-  if (row.polled >= 0 && reading == Reading::always) row.value = &poller_.value(row.polled);
+  if (row.polled >= 0) row.asked = &poller_.value(row.polled);
+  if (row.polled >= 0 && reading == Reading::always) row.value = row.asked;
   return row;
 }
 

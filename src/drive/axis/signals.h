@@ -42,11 +42,6 @@ class Signals {
     stamp = value->stamp;
     return row.conversion.toJoint(value->raw);
   }
-  /// What was asked for beside the cycle, whether it is mapped or not.
-  const fieldbus::ProcessValue* polled(SignalId id, Time now) const {
-    return poller_.value((*this)[id].polled, now);
-  }
-
   /// Somebody is about to look at what is only shown: it is asked for once more where it does not
   /// travel.
   void look();
