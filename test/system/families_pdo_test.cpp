@@ -156,12 +156,14 @@ TEST_P(FamilyPdo, ComesAsItsTransmissionTypeSays) {
 }
 
 TEST_P(FamilyPdo, IsTakenWithEachTransmissionTypeOfRpdos) {
-  const std::string target =
-      is(GetParam(), kBusSv660c) ? "interpolation_target" : "target_position";
+  FamilyMode tested = GetParam();
+  if (is(tested, kBusSv660c)) tested.mode = "pp";  // what its ip needs has type 1 [15961]
   for (const char* type : {"0", "1", "240", "254", "255"}) {
-    Scene scene(loadText(busJoint(GetParam(), ", pdos: {rpdo1: {objects: [controlword, " + target +
-                                                  "], transmission: " + type +
-                                                  "}, tpdo1: [statusword, position_actual]}")));
+    Scene scene(
+        loadText(busJoint(tested,
+                          ", pdos: {rpdo1: {objects: [controlword, "
+                          "target_position], transmission: " +
+                              std::string(type) + "}, tpdo1: [statusword, position_actual]}")));
     expectBootsAndGoes(scene);
   }
 }
