@@ -2,10 +2,12 @@
 # Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 """Goals of the action ~home: what they tell, how they end, and where the axes are then."""
 import math
+import signal
+import time
 
 import rospy
-from actionlib_msgs.msg import GoalStatus
-from cia402_driver.msg import HomeAction, HomeGoal
+from actionlib_msgs.msg import GoalID, GoalStatus
+from cia402_driver.msg import HomeAction, HomeActionGoal, HomeActionResult, HomeGoal
 from control_msgs.msg import (FollowJointTrajectoryAction, FollowJointTrajectoryGoal,
                               FollowJointTrajectoryResult)
 from goal_client import GoalClient
@@ -198,6 +200,35 @@ class Home(HomeTest):
         self.result(GoalStatus.SUCCEEDED, "gripper: homed by declaring", other)
         self.assertEqual(self.client.get_state(), GoalStatus.ACTIVE)
         self.result(GoalStatus.SUCCEEDED, "home done on 2 of 2 axes")
+
+    def test_each_of_a_burst_has_its_one_result(self):
+        results = {}
+        subscriber = rospy.Subscriber(
+            "/robot/home/result", HomeActionResult,
+            lambda message: results.setdefault(message.status.goal_id.id, []).append(message))
+        self.addCleanup(subscriber.unregister)
+        publisher = rospy.Publisher("/robot/home/goal", HomeActionGoal, queue_size=200)
+        self.addCleanup(publisher.unregister)
+        wait_until(lambda: publisher.get_num_connections() > 0 and
+                   subscriber.get_num_connections() > 0, "the node at both")
+        ids = [f"burst {number}" for number in range(100)]
+        self.process.send(signal.SIGSTOP)
+        for goal_id in ids:
+            publisher.publish(HomeActionGoal(
+                goal_id=GoalID(id=goal_id, stamp=rospy.Time.now()),
+                goal=HomeGoal(axes=["gripper"])))
+        time.sleep(0.5)  # until all are on their way
+        self.process.send(signal.SIGCONT)
+        wait_until(lambda: set(ids) <= set(results),
+                   lambda: f"a result of each, but of {sorted(set(ids) - set(results))}")
+        for goal_id in ids:
+            self.assertEqual(len(results[goal_id]), 1, goal_id)
+            status, message = results[goal_id][0].status, results[goal_id][0].result.message
+            if status.status != GoalStatus.SUCCEEDED:
+                self.assertEqual(status.status, GoalStatus.REJECTED, message)
+                self.assert_words(message, "gripper is a part of it" if "gripper" in message else
+                                  "64 goals have not ended yet; wait for their results")
+        self.assertEqual(results[ids[0]][0].status.status, GoalStatus.SUCCEEDED)
 
     def test_is_preempted_by_a_halt(self):
         self.send()
