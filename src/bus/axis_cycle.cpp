@@ -83,10 +83,7 @@ void AxisCycle::hurryProcedures(Time now) {
   any_answered_ = false;
   for (AxisUnit& unit : units_) {
     if (!std::exchange(unit.answered, false)) continue;
-    const std::uint32_t notices = unit.axis.noticeCount();
     unit.axis.update(now);
-    // The next answer may come within this cycle, and the axis knows its last notice alone.
-    if (unit.axis.noticeCount() != notices) unit.news.watch(unit.axis, unit.reporter, bus_, now);
   }
   stepJobs(now);
 }

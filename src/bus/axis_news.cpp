@@ -9,8 +9,8 @@
 namespace cia402::bus {
 namespace {
 
-Event::Severity severityOfNotice(const drive::Axis& axis) {
-  switch (axis.noticeKind()) {
+Event::Severity severityOf(drive::NoticeKind kind) {
+  switch (kind) {
     case drive::NoticeKind::error:
       return Event::Severity::error;
     case drive::NoticeKind::warning:
@@ -99,23 +99,34 @@ void AxisNews::tellProblem(drive::Axis& axis, AxisReporter& reporter, Time now) 
   if (problem.empty()) problem = unknownProblem(axis, now);
   if (state.health == fieldbus::Health::ready) cause_.clear();
   if (!cause_.empty()) problem = cause_;
-  const bool noticed = notices_ != axis.noticeCount();
   const bool told_by_health = !of_device.empty();
-  notices_ = axis.noticeCount();
-  if (noticed && !told_by_health) {
-    const Event::Severity severity = severityOfNotice(axis);
-    tell(*events_, severity, axis.notice(), now);
-    if (severity == Event::Severity::error) words_.remember(axis.notice(), now);
-  }
+  const bool noticed = tellNotices(axis, !told_by_health, problem, now);
   const std::uint32_t version = words_.version;
   if (axis.faultTextAwaited() && told_.health == fieldbus::Health::ready) return;
   say(&AxisWords::problem, problem);
   if (words_.version == version) return;
   if (!problem.empty()) words_.remember(problem, now);
-  const bool told = told_by_health || (noticed && axis.notice().find(problem) != std::string::npos);
-  if (problem.empty() || told) return;
+  if (problem.empty() || told_by_health || noticed) return;
   const bool stops = axis.config().profile->warning_stops;
   reporter.problem(severityOf(conditionOf(state, stops, true)), state.error_code, problem, now);
+}
+
+/// Several may have come since the last look at the axis.
+/// @return one of them tells of the problem
+bool AxisNews::tellNotices(const drive::Axis& axis, bool aloud, const std::string& problem,
+                           Time now) {
+  bool tells = false;
+  const std::uint32_t kept = std::min(axis.noticeCount() - notices_, drive::Notices::kKept);
+  for (std::uint32_t back = kept; back-- > 0;) {
+    const drive::Notice& notice = axis.notice(axis.noticeCount() - back);
+    tells = tells || notice.text.find(problem) != std::string::npos;
+    if (!aloud) continue;
+    const Event::Severity severity = severityOf(notice.kind);
+    tell(*events_, severity, notice.text, now);
+    if (severity == Event::Severity::error) words_.remember(notice.text, now);
+  }
+  notices_ = axis.noticeCount();
+  return tells;
 }
 
 /// Unknown is a problem once the drive has had the time to send its first TPDOs.

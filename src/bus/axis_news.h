@@ -63,6 +63,7 @@ class AxisNews {
   bool isUnwell(const drive::Axis& axis) const;
   [[gnu::cold]] void tellNews(drive::Axis& axis, AxisReporter& reporter, const BusSide& bus,
                               Time now);
+  bool tellNotices(const drive::Axis& axis, bool aloud, const std::string& problem, Time now);
   void tellProblem(drive::Axis& axis, AxisReporter& reporter, Time now);
   [[gnu::cold]] void tellStream(const drive::Axis& axis, Time now);
   std::string unknownProblem(const drive::Axis& axis, Time now);

@@ -38,7 +38,7 @@ TEST(StopBySdo, QuickStopsAnEnabledAxisAndSaysWhy) {
   bench.axis.stopBesideCycle("SYNC is gone");
   EXPECT_EQ(bench.axis.noticeCount(), 1u);
   EXPECT_EQ(bench.axis.notice(), "shoulder (node 3): SYNC is gone");
-  EXPECT_EQ(bench.axis.noticeKind(), NoticeKind::error);
+  EXPECT_EQ(bench.axis.notice(bench.axis.noticeCount()).kind, NoticeKind::error);
   bench.run(milliseconds(12));
   EXPECT_EQ(quickStopsBySdo(bench.drive), 1u);
   EXPECT_EQ(bench.drive.controlword, 0x0002) << "no RPDO that arrives enables it again";

@@ -129,10 +129,10 @@ TEST(AxisWarnings, AreToldOnceAndAreToldFromWhatStopsTheAxis) {
   Bench bench(testConfig(profile));
   bench.drive.aborts[{0x6081, 0}] = 0x06020000;
   ASSERT_TRUE(bench.boot());
-  EXPECT_EQ(bench.axis.noticeKind(), NoticeKind::error);
+  EXPECT_EQ(bench.axis.notice(bench.axis.noticeCount()).kind, NoticeKind::error);
   ASSERT_TRUE(bench.enable());
   EXPECT_EQ(bench.axis.noticeCount(), 1u);
-  EXPECT_EQ(bench.axis.noticeKind(), NoticeKind::warning);
+  EXPECT_EQ(bench.axis.notice(bench.axis.noticeCount()).kind, NoticeKind::warning);
   EXPECT_THAT(bench.axis.notice(), HasSubstr("profile_velocity"));
   ASSERT_TRUE(bench.perform(ProcedureKind::disable).success);
   ASSERT_TRUE(bench.enable());
@@ -140,7 +140,7 @@ TEST(AxisWarnings, AreToldOnceAndAreToldFromWhatStopsTheAxis) {
   bench.fail(0x8611);
   bench.run(milliseconds(20));
   EXPECT_EQ(bench.axis.noticeCount(), 2u);
-  EXPECT_EQ(bench.axis.noticeKind(), NoticeKind::error);
+  EXPECT_EQ(bench.axis.notice(bench.axis.noticeCount()).kind, NoticeKind::error);
 }
 
 }  // namespace

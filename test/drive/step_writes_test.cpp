@@ -66,7 +66,7 @@ TEST(WriteStep, WhatOnlyADefaultAsksForIsLeftOutWhereTheDriveDoesNotHaveIt) {
     EXPECT_THAT(bench.axis.notice(),
                 HasSubstr("shoulder (node 3): quick_stop_option (605A:00) is left out"));
     EXPECT_THAT(bench.axis.notice(), HasSubstr("`lacks: [quick_stop_option]` of axes/shoulder"));
-    EXPECT_EQ(bench.axis.noticeKind(), NoticeKind::warning);
+    EXPECT_EQ(bench.axis.notice(bench.axis.noticeCount()).kind, NoticeKind::warning);
   }
 }
 

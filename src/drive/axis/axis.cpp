@@ -305,7 +305,6 @@ void Axis::onBusLost(const std::string& why) {
 std::string Axis::faultText() const { return impl_->core.faults().text(); }
 bool Axis::faultTextAwaited() const { return impl_->core.faults().textAwaited(); }
 std::string Axis::unknownText() const { return impl_->core.feedback().unknownText(); }
-const std::string& Axis::notice() const { return impl_->core.notices().text(); }
-NoticeKind Axis::noticeKind() const { return impl_->core.notices().kind(); }
+const Notice& Axis::notice(std::uint32_t number) const { return impl_->core.notices().at(number); }
 
 }  // namespace cia402::drive

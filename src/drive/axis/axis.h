@@ -270,8 +270,9 @@ class Axis {
 
   /// The last thing the axis did by itself (left operation, quick-stopped without feedback, dropped
   /// a set-point, lost its device), as a sentence; noticeCount() grows with each.
-  const std::string& notice() const;
-  NoticeKind noticeKind() const;
+  const std::string& notice() const { return notice(noticeCount()).text; }
+  /// The one of this number. @param number above noticeCount() - Notices::kKept
+  const Notice& notice(std::uint32_t number) const;
   std::uint32_t noticeCount() const { return *shown_.notices; }
 
  private:

@@ -6,11 +6,12 @@
 
 namespace cia402::drive {
 
-void Notices::notify(std::string text) {
-  text_ = std::move(text);
-  kind_ = NoticeKind::error;
+void Notices::add(std::string text, NoticeKind kind) {
   ++count_;
+  kept_[count_ % kKept] = {std::move(text), kind};
 }
+
+void Notices::notify(std::string text) { add(std::move(text), NoticeKind::error); }
 
 bool Notices::isNew(const std::string& text) {
   if (std::find(once_.begin(), once_.end(), text) != once_.end()) return false;
@@ -23,15 +24,10 @@ void Notices::warnOnce(std::string text) {
 }
 
 void Notices::informOnce(std::string text) {
-  if (!isNew(text)) return;
-  notify(std::move(text));
-  kind_ = NoticeKind::information;
+  if (isNew(text)) add(std::move(text), NoticeKind::information);
 }
 
-void Notices::warn(std::string text) {
-  notify(std::move(text));
-  kind_ = NoticeKind::warning;
-}
+void Notices::warn(std::string text) { add(std::move(text), NoticeKind::warning); }
 
 void Notices::fail(std::string text, bool tell) {
   failure_ = std::move(text);
