@@ -18,6 +18,8 @@ class Signals {
  public:
   /// @throws std::invalid_argument if statusword or actual position are not mapped.
   Signals(const AxisConfig& config, fieldbus::Device& device);
+  Signals(const Signals&) = delete;  ///< its rows point into it
+  Signals& operator=(const Signals&) = delete;
 
   const Signal& operator[](SignalId id) const { return rows_[static_cast<std::size_t>(id)]; }
   /// The rows of the profile's `signals`, in its order; of those that the drive lacks spec is
