@@ -49,10 +49,13 @@ bool asOne(const std::string& verb) {
 }
 
 /// Whether an axis stands, or is to stand, once such a call has succeeded.
+bool stops(const std::string& verb) {
+  return verb == "halt" || verb == "disable" || verb == "quick_stop";
+}
+
 bool bringsToRest(const std::string& verb) {
-  static const char* const kVerbs[] = {"halt",         "disable", "quick_stop", "set_mode",
-                                       "set_position", "save",    "restore"};
-  return std::find(std::begin(kVerbs), std::end(kVerbs), verb) != std::end(kVerbs);
+  return stops(verb) || verb == "set_mode" || verb == "set_position" || verb == "save" ||
+         verb == "restore";
 }
 
 }  // namespace
@@ -216,6 +219,14 @@ bool Calls::homesStill(std::size_t axis) const {
   });
 }
 
+/// A homing that waited for its turn at the call goes on when that has come: only stops withdraw
+/// it.
+bool Calls::waitsToHome(const Call& call, std::size_t axis) const {
+  constexpr int kHomingMode = 6;  // 6061h
+  const bool began = axis >= call.modes.size() || call.modes[axis] == kHomingMode;
+  return !stops(call.verb) && !began && homesStill(axis);
+}
+
 void Calls::endPermits(const Call& call, const bus::Answer& answer) {
   const Time now = session_.now();
   for (std::size_t i : call.axes) {
@@ -228,7 +239,7 @@ void Calls::endPermits(const Call& call, const bus::Answer& answer) {
     const bool same =
         call.verb == "set_mode" && i < call.modes.size() && call.modes[i] == truth.mode;
     if (bringsToRest(call.verb) && answer.success && !same) {
-      session_.permits.end(i, call.at, now);
+      session_.permits.end(i, waitsToHome(call, i) ? Time() : call.at, now);
     }
   }
 }

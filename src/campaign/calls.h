@@ -57,6 +57,7 @@ class Calls {
   /// An action that was cancelled is answered once its motors stand.
   void judgeCancelled(const Call& call, const bus::ProcedureReport& report);
   void endPermits(const Call& call, const bus::Answer& answer);
+  bool waitsToHome(const Call& call, std::size_t axis) const;
   bool homesStill(std::size_t axis) const;
 
   Session& session_;
