@@ -1,5 +1,7 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #include <cmath>
+#include <memory>
+#include <utility>
 
 #include "drive/axis_fixture.h"
 
@@ -28,6 +30,71 @@ TEST(SetModeProcedure, SwitchesAnEnabledAxisAtStandstillWithoutMotion) {
   }
   EXPECT_EQ(largest, 0.0);
   EXPECT_EQ(bench.drive.state, FakeDrive::S::enabled);
+}
+
+/// Modes of streamed set-points want bit 4, as interpolated position does.
+AxisConfig withBit4() {
+  DriveProfile profile = testProfile();
+  for (ModeSpec& mode : profile.modes) {
+    if (mode.cyclic) mode.controlword_bits = 0x10;
+  }
+  return testConfig(profile);
+}
+
+/// Counts how often bit 4 rises while the drive is in another mode than `mode`.
+void countEdges(Bench& bench, int mode, int& edges) {
+  auto before = std::make_shared<bool>(false);
+  bench.each_cycle = [&bench, &edges, mode, before] {
+    const bool bit = (bench.drive.controlword & 0x10) != 0;
+    if (bit && !std::exchange(*before, bit) && bench.drive.mode != mode) ++edges;
+    *before = bit;
+  };
+}
+
+// Bit 4 begins a homing in homing mode, and takes a set-point in profile position.
+TEST(SetModeProcedure, BitsOfAModeAreSentOnceTheDriveShowsIt) {
+  for (const char* before : {"pp", "profile_velocity"}) {
+    Bench bench(withBit4());
+    ASSERT_TRUE(bench.boot() && bench.enable());
+    ASSERT_TRUE(bench.perform(ProcedureKind::set_mode, before).success);
+    bench.drive.mode_delay = 10;
+    int edges = 0;
+    countEdges(bench, 8, edges);
+    const ProcedureStatus& status = bench.perform(ProcedureKind::set_mode, "csp");
+    EXPECT_TRUE(status.success) << status.message;
+    bench.run(milliseconds(40));
+    EXPECT_EQ(edges, 0);
+    EXPECT_NE(bench.drive.controlword & 0x10, 0);
+  }
+}
+
+TEST(SetModeProcedure, BitsOfTheModeThatFollowsAHomingBeginNoOther) {
+  AxisConfig config = withBit4();
+  config.homing = HomingOptions();
+  config.homing->method = 17;
+  config.homing->search_velocity = 0.3;
+  Bench bench(config);
+  ASSERT_TRUE(bench.boot() && bench.enable());
+  bench.drive.mode_delay = 10;
+  int edges = 0;
+  countEdges(bench, 8, edges);
+  const ProcedureStatus& status = bench.perform(ProcedureKind::home);
+  EXPECT_TRUE(status.success) << status.message;
+  bench.run(milliseconds(40));
+  EXPECT_EQ(edges, 1) << "its start";
+  EXPECT_NE(bench.drive.controlword & 0x10, 0);
+}
+
+TEST(SetModeProcedure, BitsWaitForADriveThatTakesItsModeOnceItIsEnabled) {
+  AxisConfig config = withBit4();
+  Bench bench(config);
+  ASSERT_TRUE(bench.boot());
+  bench.drive.mode = 6;
+  bench.drive.forgets_mode = true;
+  int edges = 0;
+  countEdges(bench, 8, edges);
+  (void)bench.perform(ProcedureKind::enable);
+  EXPECT_EQ(edges, 0);
 }
 
 TEST(SetModeProcedure, DisablesADriveThatTakesNoModeWhileEnabled) {

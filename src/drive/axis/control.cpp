@@ -28,11 +28,12 @@ void Control::silence() {
 void Control::enterOperation(Time now) {
   in_operation_ = true;
   brake_waits_ = brake_release_ > Duration(0);
+  mode_waits_ = true;
   brake_released_ = now + brake_release_;
 }
 
 void Control::leaveOperation() {
-  in_operation_ = brake_waits_ = homing_start_ = false;
+  in_operation_ = brake_waits_ = mode_waits_ = homing_start_ = false;
   brake_released_ = kNever;
   endHalt();
 }
@@ -63,13 +64,6 @@ void Control::command() {
   base_ = command_.controlword;
 }
 
-/// The drive may turn the motor on its way out of operation.
-bool Control::stopping() const {
-  const State state = axis_.state.state;
-  return goal_ != Goal::enabled && (state == State::operation_enabled || state == State::unknown ||
-                                    state == State::quick_stop_active);
-}
-
 std::uint16_t Control::wordOutOfOperation(const ModeSpec& mode) {
   unsigned word = 0;
   if (silent_ && !fault_reset_) {
@@ -80,13 +74,18 @@ std::uint16_t Control::wordOutOfOperation(const ModeSpec& mode) {
     command();
     word = base_ | (fault_reset_ ? controlword::kFaultReset : 0u);
   }
-  return static_cast<std::uint16_t>(word | (stopping() ? mode.stoppingBits() : 0u));
+  // The drive may turn the motor on its way out of operation.
+  const State state = axis_.state.state;
+  const bool stopping =
+      goal_ != Goal::enabled && (state == State::operation_enabled || state == State::unknown ||
+                                 state == State::quick_stop_active);
+  return static_cast<std::uint16_t>(word | (stopping ? mode.stoppingBits() : 0u));
 }
 
 void Control::write(unsigned mode_bits, const ModeSpec& mode) {
   if (in_operation_) {
     command();
-    unsigned word = base_ | (brake_waits_ ? 0u : mode_bits);
+    unsigned word = base_ | (bitsWait() ? 0u : mode_bits);
     if (fault_reset_) word |= controlword::kFaultReset;
     if (homing_start_) word |= controlword::kHomingStart;
     if (halt_) word |= controlword::kHalt;

@@ -41,6 +41,10 @@ class Control {
   bool inOperation() const { return in_operation_; }
   /// @param now the time that the brake needs counts from then
   void enterOperation(Time now);
+  /// In operation the drive may still be in another mode, in which the bits of the selected one
+  /// mean something else (bit 4 begins a homing, or takes a set-point): they wait until it shows
+  /// the selected one.
+  void awaitMode() { mode_waits_ = in_operation_; }
   void leaveOperation();
   /// The time that the brake needs, from the next enabling on, s >= 0.
   void setBrakeRelease(Duration time) { brake_release_ = time; }
@@ -50,13 +54,16 @@ class Control {
   Duration powerOffTime() const { return power_off_; }
   /// When the brake will have had its time; kNever out of operation.
   Time brakeReleasedAt() const { return brake_released_; }
-  /// Once, when the brake has had its time: commands count from then on. @return true then
-  bool releaseBrake(Time now) {
-    if (!brake_waits_ || now < brake_released_) return false;
-    brake_waits_ = false;
-    return true;
+  /// The bits of the mode are not sent yet, though it is in operation.
+  bool bitsWait() const { return brake_waits_ || mode_waits_; }
+  /// Once, when the brake has had its time and the drive is in the mode: its bits are sent from
+  /// then on, and commands count. @param shown the drive shows the mode @return true then
+  bool releaseBits(Time now, bool shown) {
+    if (now >= brake_released_) brake_waits_ = false;
+    if (shown) mode_waits_ = false;
+    return !bitsWait();
   }
-  /// In operation, and releaseBrake() has been.
+  /// In operation, and the brake has had its time.
   bool brakeReleased() const { return in_operation_ && !brake_waits_; }
 
   void setFaultReset(bool on) { fault_reset_ = on; }
@@ -86,7 +93,6 @@ class Control {
  private:
   std::uint16_t silentWord() const;
   void command();
-  bool stopping() const;
   [[gnu::cold]] std::uint16_t wordOutOfOperation(const ModeSpec& mode);
 
   AxisBasis& axis_;
@@ -95,7 +101,7 @@ class Control {
   bool silent_ = true;
   bool voltage_off_ = false;  ///< the power stage is to be off, whatever the drive shows
   bool in_operation_ = false;
-  bool brake_waits_ = false;  ///< in operation, until releaseBrake()
+  bool brake_waits_ = false, mode_waits_ = false;  ///< in operation, until releaseBits()
   bool fault_reset_ = false, homing_start_ = false, halt_ = false, braking_ = false;
   Duration brake_release_, power_off_;
   Time brake_released_ = kNever;

@@ -15,6 +15,13 @@ namespace {
                         missing + "; " + report(axis));
 }
 
+/// With its bits the mode begins to follow: from where the motor is by then.
+[[gnu::cold]] void releaseBits(AxisCore& axis, Time now) {
+  const ModeSpec& mode = axis.mode().spec();
+  const bool released = axis.control().releaseBits(now, axis.feedback().shows(mode));
+  if (released && mode.controlword_bits != 0) axis.generator().neutralize();
+}
+
 /// The place to stand at was not taken: what waits in the drive would be gone to as the halt ends.
 [[gnu::cold]] void leaveHalt(AxisCore& axis) {
   axis.notices().fail(
@@ -57,6 +64,7 @@ void AxisCore::supervise(Time now) {
     superviseOperation(now);
   } else if (goal() == Goal::enabled && state().state == State::operation_enabled) {
     control_.enterOperation(now);
+    (void)control_.releaseBits(now, feedback_.shows(mode_.spec()));
     faults_.acknowledgeWarning();
     generator_.beginFollowing(control_.brakeReleasedAt());
     generator_.neutralize();
@@ -68,8 +76,7 @@ void AxisCore::superviseOperation(Time now) {
   if (!enabled && !feedback_.maybeDecodable(now)) return giveUpOperation();
   if (state().warning && !goesOnWarned(now)) return;
   if (mode_.brakes()) stops_.watchBrakeMode(now);
-  // With its bits the mode begins to follow: from where the motor is by then.
-  if (control_.releaseBrake(now) && mode_.spec().controlword_bits != 0) generator_.neutralize();
+  if (control_.bitsWait()) releaseBits(*this, now);
   generator_.watchFollowing(now, faults_.holdsMotor());
 }
 
@@ -163,6 +170,7 @@ void AxisCore::selectMode(const ModeChannel& mode) {
   stops_.forgetBrakeMode();
   if (!mode_.homing()) coordinates_.resumeCounting();
   control_.setHomingStart(false);
+  if (!feedback_.shows(mode_.spec())) control_.awaitMode();
   control_.endBraking();  // it belongs to the mode that is left, at rest
   generator_.enter();
 }
