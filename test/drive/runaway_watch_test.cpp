@@ -6,6 +6,7 @@
 #include <cmath>
 #include <functional>
 #include <optional>
+#include <utility>
 
 namespace cia402::drive {
 namespace {
@@ -81,6 +82,42 @@ TEST(RunawayWatch, LeavesOneAloneThatIsLedThere) {
   Watched to_a_place, on;
   EXPECT_FALSE(to_a_place.noticed(accelerating(20.0), [](double) { return to(100.0); }));
   EXPECT_FALSE(on.noticed([](double t) { return 0.5 * t; }, [](double) { return turning(0.45); }));
+}
+
+// A tap that is shorter than two windows: at the end of neither it is led as fast as between them.
+TEST(RunawayWatch, LeavesOneAloneThatVelocitiesLeadForAMoment) {
+  constexpr double kHard = 21.0, kTop = 0.8;
+  constexpr double kRamp = kTop / kHard;  // s
+  const auto speed = [](double t) { return std::max(0.0, kTop - kHard * std::fabs(t - kRamp)); };
+  for (int begin = 0; begin < 60; ++begin) {
+    RunawayWatch watch(kStandstill, kCount, kHard, 10ms);
+    double position = 0.0, told_before = 0.0;
+    Time next{};
+    for (int i = 0; i < 500; ++i) {
+      const double t = 1e-3 * (i - 100 - begin);
+      position += 1e-3 * speed(t - 0.015);  // so much the motor is late
+      const Time now = Time{} + i * 1ms;
+      if (now < next) continue;
+      next = now + watch.window();
+      RunawayWatch::Led led = turning(speed(t));
+      led.velocity_before = std::exchange(told_before, led.velocity);
+      const bool judged = watch.measure(position, now);
+      EXPECT_FALSE(judged && watch.runsAway(led)) << begin << " ms, at " << t;
+    }
+  }
+}
+
+TEST(RunawayWatch, NoticesOneThatGoesOnAfterAMomentOfVelocity) {
+  RunawayWatch watch(kStandstill, kCount, 21.0, 10ms);
+  bool noticed = false;
+  double told_before = 0.0;
+  for (int i = 0; i < 10 && !noticed; ++i) {
+    const double t = 0.05 * i;
+    RunawayWatch::Led led = turning(i == 1 ? 0.3 : 0.0);
+    led.velocity_before = std::exchange(told_before, led.velocity);
+    noticed = watch.measure(10.0 * t * t, Time{} + i * 50ms) && watch.runsAway(led);
+  }
+  EXPECT_TRUE(noticed);
 }
 
 // A drive that takes its goals one by one goes to each of them.

@@ -45,6 +45,8 @@ void Runaway::look(Time now) {
   look_at_ = now + watch_.window();
   const AxisState& state = axis_.state();
   const SetPoint& sent = axis_.generator().sent();
+  const bool turned = sent.kind() == SetPointKind::velocity;
+  const double before = std::exchange(turned_at_, turned ? sent.value() : kUnknown);
   const bool moved = std::exchange(zero_changes_, state.zero_changes) != state.zero_changes;
   // An effort may have made it faster just before another mode brakes it.
   const bool other = std::exchange(kind_, sent.kind()) != sent.kind();
@@ -59,7 +61,8 @@ void Runaway::look(Time now) {
   }
   if (!watch_.measure(state.position, state.stamp)) return;
   if (sent.kind() == SetPointKind::stream && watch_.follows(sent.velocity())) return;
-  const RunawayWatch::Led where = led(now);
+  RunawayWatch::Led where = led(now);
+  where.velocity_before = before;
   if (watch_.runsAway(where)) stop(where, now);
 }
 

@@ -34,6 +34,7 @@ class Runaway {
   AxisCore& axis_;
   Time look_at_{};  ///< when it looks again
   RunawayWatch watch_;
+  double turned_at_ = kUnknown;   ///< velocity that it was led by at the last look; NaN: by none
   double limited_at_ = kUnknown;  ///< where a limit of the drive came to hold it, rad or m
   Time settled_{};                ///< the drive had not come to its goal then
   SetPointKind kind_ = SetPointKind::none;  ///< of the set-points that it has seen

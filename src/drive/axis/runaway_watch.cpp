@@ -55,6 +55,13 @@ bool RunawayWatch::measure(double position, Time stamp) {
   return known;
 }
 
+/// How fast velocities may have led it that way within the last window, by its acceleration.
+double RunawayWatch::fastestLed(const Led& led, double way) const {
+  if (std::isnan(led.velocity_before)) return 0.0;
+  const double ends = way * (led.velocity_before + led.velocity);
+  return std::max(0.0, 0.5 * (ends + acceleration_ * toSeconds(window_)));
+}
+
 bool RunawayWatch::runsAway(const Led& led) {
   const bool towards = velocity_ > 0.0 ? position_ < led.highest : position_ > led.lowest;
   if (follows(led.velocity)) return false;
@@ -66,7 +73,7 @@ bool RunawayWatch::runsAway(const Led& led) {
   if (way_ != way) {  // what is seen once may be a leap of what is measured
     way_ = way;
     from_ = position_before_;
-    speed_ = std::max(0.0, way * velocity_before_);
+    speed_ = std::max(way * velocity_before_, std::min(way * velocity_, fastestLed(led, way)));
     return false;
   }
   const double gone = std::fabs(position_ - from_), speed = std::fabs(velocity_);

@@ -27,7 +27,10 @@ class RunawayWatch {
   /// Where the motor is led.
   struct Led {
     double velocity = 0.0;  ///< rad/s or m/s; what goes that way, and little faster, is led
-    double speed = 0.0;     ///< so fast, or slower, it may go either way
+    /// The same a window ago, where it is led by velocities alone: in between it may have been led
+    /// faster than at both ends. NaN: by others
+    double velocity_before = std::numeric_limits<double>::quiet_NaN();
+    double speed = 0.0;  ///< so fast, or slower, it may go either way
     /// rad or m; what goes towards one of them is led, too; NaN: to no position
     double lowest = std::numeric_limits<double>::quiet_NaN();
     double highest = std::numeric_limits<double>::quiet_NaN();
@@ -62,6 +65,8 @@ class RunawayWatch {
   double velocity() const { return velocity_; }
 
  private:
+  double fastestLed(const Led& led, double way) const;
+
   /// Faster than it is led by more than that it is not led.
   static constexpr double kAhead = 1.25;
 
