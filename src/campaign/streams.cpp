@@ -128,9 +128,12 @@ void Streams::accepted(std::size_t axis, double value) {
                           mode->kind == drive::ControlKind::velocity ? std::fabs(value) : 0.0);
   speed = std::min(speed, facts.velocity);
   if (mode->kind == drive::ControlKind::torque) speed = facts.velocity;
+  // The stream may end while the motor speeds up: with a jerk limit that is to be undone first.
+  const auto& limits = facts.config->limits;
+  const double undone = limits.jerk ? 2.0 * facts.acceleration / *limits.jerk : 0.0;
   session_.permits.allow(axis, Source::stream,
                          session_.now() + facts.config->command_timeout + 4 * facts.config->cycle +
-                             facts.stopTime(speed));
+                             facts.stopTime(speed) + fromSeconds(undone));
 }
 
 }  // namespace cia402::campaign
