@@ -39,7 +39,7 @@ TEST(ProfileMistakes, AreToldWithWhatToDo) {
       {"  a: {control: position, target: target_position}\n",
        "modes/a: `value` is missing: the number that mode_of_operation (6060h) takes"},
       {"  a: {value: 4, target: target_position}\n",
-       "modes/a: `control` is missing: position, velocity, torque or homing"},
+       "modes/a: `control` is missing: position, velocity, torque, homing"},
       {"  a: {value: 4, control: position, target: target_position, cyclic: true, handshake: "
        "new_set_point, status_bits: {set_point_acknowledge: 12}}\n",
        "a cyclic mode cannot wait for an acknowledgement of each set-point"},

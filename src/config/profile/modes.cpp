@@ -1,6 +1,7 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 
+#include "common/text.h"
 #include "config/profile/parts.h"
 
 namespace cia402::config {
@@ -253,7 +254,9 @@ ModeSpec readMode(const std::string& name, const yaml::Value& value, const Drive
   mode.name = drive::canonicalModeName(name);
   yaml::Section section(value);
   readValue(section, profile, mode);
-  const auto control = section.require("control", "position, velocity, torque or homing");
+  std::string kinds;
+  for (const std::string& word : drive::controlKindWords()) append(kinds, word, ", ");
+  const auto control = section.require("control", kinds);
   const auto kind = control ? control->oneOf(drive::controlKindWords()) : std::nullopt;
   if (kind) mode.kind = static_cast<ControlKind>(*kind);
   section.read("cyclic", mode.cyclic);
