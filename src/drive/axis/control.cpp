@@ -27,13 +27,13 @@ void Control::silence() {
 
 void Control::enterOperation(Time now) {
   in_operation_ = true;
-  brake_waits_ = brake_release_ > Duration(0);
-  mode_waits_ = true;
+  bits_wait_ = kForMode | (brake_release_ > Duration(0) ? kForBrake : 0u);
   brake_released_ = now + brake_release_;
 }
 
 void Control::leaveOperation() {
-  in_operation_ = brake_waits_ = mode_waits_ = homing_start_ = false;
+  in_operation_ = homing_start_ = false;
+  bits_wait_ = 0;
   brake_released_ = kNever;
   endHalt();
 }

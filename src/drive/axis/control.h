@@ -44,7 +44,9 @@ class Control {
   /// In operation the drive may still be in another mode, in which the bits of the selected one
   /// mean something else (bit 4 begins a homing, or takes a set-point): they wait until it shows
   /// the selected one.
-  void awaitMode() { mode_waits_ = in_operation_; }
+  void awaitMode() {
+    if (in_operation_) bits_wait_ |= kForMode;
+  }
   void leaveOperation();
   /// The time that the brake needs, from the next enabling on, s >= 0.
   void setBrakeRelease(Duration time) { brake_release_ = time; }
@@ -55,16 +57,16 @@ class Control {
   /// When the brake will have had its time; kNever out of operation.
   Time brakeReleasedAt() const { return brake_released_; }
   /// The bits of the mode are not sent yet, though it is in operation.
-  bool bitsWait() const { return brake_waits_ || mode_waits_; }
+  bool bitsWait() const { return bits_wait_ != 0; }
   /// Once, when the brake has had its time and the drive is in the mode: its bits are sent from
   /// then on, and commands count. @param shown the drive shows the mode @return true then
   bool releaseBits(Time now, bool shown) {
-    if (now >= brake_released_) brake_waits_ = false;
-    if (shown) mode_waits_ = false;
+    const unsigned over = (now >= brake_released_ ? kForBrake : 0u) | (shown ? kForMode : 0u);
+    bits_wait_ &= ~over;
     return !bitsWait();
   }
   /// In operation, and the brake has had its time.
-  bool brakeReleased() const { return in_operation_ && !brake_waits_; }
+  bool brakeReleased() const { return in_operation_ && (bits_wait_ & kForBrake) == 0; }
 
   void setFaultReset(bool on) { fault_reset_ = on; }
   void setHomingStart(bool on) { homing_start_ = on; }
@@ -91,6 +93,8 @@ class Control {
   const char* text() const { return command_.text; }
 
  private:
+  enum : unsigned { kForBrake = 1, kForMode = 2 };
+
   std::uint16_t silentWord() const;
   void command();
   [[gnu::cold]] std::uint16_t wordOutOfOperation(const ModeSpec& mode);
@@ -101,7 +105,7 @@ class Control {
   bool silent_ = true;
   bool voltage_off_ = false;  ///< the power stage is to be off, whatever the drive shows
   bool in_operation_ = false;
-  bool brake_waits_ = false, mode_waits_ = false;  ///< in operation, until releaseBits()
+  unsigned bits_wait_ = 0;  ///< for these, in operation, until releaseBits()
   bool fault_reset_ = false, homing_start_ = false, halt_ = false, braking_ = false;
   Duration brake_release_, power_off_;
   Time brake_released_ = kNever;

@@ -53,6 +53,16 @@ void AxisCore::readFeedback(Time now) {
   if (const auto moved = coordinates_.followHome(state().statusword)) zeroMoved(*moved);
 }
 
+/// A part of each cycle: it keeps its place in supervise(), whatever is added to it.
+[[gnu::always_inline]] inline void AxisCore::superviseOperation(Time now) {
+  const bool enabled = state().state == State::operation_enabled;
+  if (!enabled && !feedback_.maybeDecodable(now)) return giveUpOperation();
+  if (state().warning && !goesOnWarned(now)) return;
+  if (mode_.brakes()) stops_.watchBrakeMode(now);
+  if (control_.bitsWait()) releaseBits(*this, now);
+  generator_.watchFollowing(now, faults_.holdsMotor());
+}
+
 void AxisCore::supervise(Time now) {
   stops_.watch(now);
   const bool late = now > written_ + 2 * config().cycle && written_ != Time{};
@@ -69,15 +79,6 @@ void AxisCore::supervise(Time now) {
     generator_.beginFollowing(control_.brakeReleasedAt());
     generator_.neutralize();
   }
-}
-
-void AxisCore::superviseOperation(Time now) {
-  const bool enabled = state().state == State::operation_enabled;
-  if (!enabled && !feedback_.maybeDecodable(now)) return giveUpOperation();
-  if (state().warning && !goesOnWarned(now)) return;
-  if (mode_.brakes()) stops_.watchBrakeMode(now);
-  if (control_.bitsWait()) releaseBits(*this, now);
-  generator_.watchFollowing(now, faults_.holdsMotor());
 }
 
 void AxisCore::stopUnheard(Time now) {
