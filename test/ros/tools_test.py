@@ -132,9 +132,17 @@ class Takers:
             tool.stop()
         return recorded
 
+    @staticmethod
+    def of_two_tools(line):
+        """rospy: somebody has connected twice, and dropped the one. The second listener begins once
+        the driver has ended, so that it was none of its connections."""
+        return line.startswith(("second_listener:", "/second_listener:")) and \
+            "terminated before handshake header received" in line
+
     def check(self, recorded):
         told = [line for tool in self.tools for line in tool.complaints()]
-        self.assertEqual(told + self.complaints.of(self.tools), [])
+        told += self.complaints.of(self.tools)
+        self.assertEqual([line for line in told if not self.of_two_tools(line)], [])
         self.assert_rising("measured", [m.header.stamp for m in recorded["/measured"]])
         stamps = {}
         for message in recorded["/tf"]:
