@@ -150,6 +150,33 @@ TEST(ProcedureAnswerOfAnOptionalDrive, SaysThatItWasLeftOut) {
   }
 }
 
+// A drive that comes back stays disabled until somebody asks anew.
+TEST(ProcedureAnswerOfHoming, OfAnAxisThatWasLostWhileItWaitedIsThatItWasNotStarted) {
+  for (const auto lost : {1000ms, 4000ms}) {  // it is back when its turn comes, or not
+    config::RobotConfig config = test::testRobot();
+    config.axes[0].homing = test::homingOfOrder(0);
+    config.axes[1].homing = test::homingOfOrder(1);
+    RobotWorld world(config);
+    world.enable();
+    world.drives[0].homing_is_slow = true;
+    const auto homing = world.begin(ProcedureKind::home);
+    world.run(200ms);
+    world.drives[1].silent = true;
+    world.run(lost);
+    world.drives[1].silent = false;
+    world.run(500ms);
+    world.drives[0].homing_is_slow = false;
+    const Answer answer = world.wait(homing);
+    EXPECT_FALSE(answer.success);
+    EXPECT_THAT(answer.message, HasSubstr("elbow: not started, for its drive was lost, or has "
+                                          "restarted, while it waited"));
+    world.run(3s);
+    EXPECT_EQ(world.node(1).health(), fieldbus::Health::ready);
+    EXPECT_FALSE(world.drives[1].enabled());
+    EXPECT_FALSE(world.drives[1].homing_began);
+  }
+}
+
 TEST(ProcedureAnswerOfHoming, NamesAxesOfOneOrderAsTheConfigurationDoes) {
   config::RobotConfig config = test::testRobot();
   for (drive::AxisConfig& axis : config.axes) axis.homing = test::homingOfOrder(0);

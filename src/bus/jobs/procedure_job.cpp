@@ -80,6 +80,8 @@ ProcedureJob::ProcedureJob(drive::ProcedureRequest request, std::vector<Item> it
     entries_.back().axis = item.axis;
     entries_.back().number = item.number;
     entries_.back().order = item.order;
+    entries_.back().ready = item.axis->device().ready();
+    entries_.back().boot_ups = item.axis->device().bootUps();
   }
 }
 
@@ -316,8 +318,13 @@ void ProcedureJob::withdrawEnabling(const std::string& why) {
   }
 }
 
-/// Somebody who stops an axis does not want it moved by what was asked before.
+/// Somebody who stops an axis does not want it moved by what was asked before; and a drive that was
+/// lost, or has restarted, stays disabled until it is asked for anew.
 void ProcedureJob::Entry::watchWaiting() {
+  const fieldbus::Device& device = axis->device();
+  if (ready && (!device.ready() || device.bootUps() != boot_ups)) {
+    refuse("its drive was lost, or has restarted, while it waited");
+  }
   const drive::ProcedureStatus& status = axis->procedure();
   if (seen && status.id != id && stops(status.kind)) withdraw(toString(status.kind));
   id = status.id;

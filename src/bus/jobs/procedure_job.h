@@ -63,9 +63,11 @@ class ProcedureJob final : public Job {
     std::uint32_t id = 0;  ///< of the procedure; while waiting: of the axis' last one
     bool seen = false;     ///< id is known while waiting
     std::string message;
-    std::string mode;       ///< before set_mode
-    bool was_on = false;    ///< before it was begun
-    bool unwanted = false;  ///< if it has failed, then as somebody wanted it to end
+    std::string mode;            ///< before set_mode
+    bool was_on = false;         ///< before it was begun
+    bool ready = false;          ///< its device was, when the job was made,
+    std::uint32_t boot_ups = 0;  ///< and had booted so often
+    bool unwanted = false;       ///< if it has failed, then as somebody wanted it to end
 
     bool ended() const { return stage == Stage::succeeded || stage == Stage::failed; }
     void fail(std::string why);
