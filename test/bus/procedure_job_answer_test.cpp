@@ -81,7 +81,7 @@ void tellsOfSilenceAtClearedFaults(Duration silence, bool is_noticed) {
   EXPECT_FALSE(answer.success);
   EXPECT_THAT(answer.message,
               HasSubstr("shoulder: clear_faults had succeeded, but it gives no fresh statusword "
-                        "and position any more"));
+                        "and position any more: recover"));
 }
 
 TEST(ProcedureAnswerOfClearedFaults, TellsOfAnAxisThatFellSilentMeanwhile) {
@@ -169,7 +169,7 @@ TEST(ProcedureAnswerOfHoming, OfAnAxisThatWasLostWhileItWaitedIsThatItWasNotStar
     const Answer answer = world.wait(homing);
     EXPECT_FALSE(answer.success);
     EXPECT_THAT(answer.message, HasSubstr("elbow: not started, for its drive was lost, or has "
-                                          "restarted, while it waited"));
+                                          "restarted, while it waited: call it again"));
     world.run(3s);
     EXPECT_EQ(world.node(1).health(), fieldbus::Health::ready);
     EXPECT_FALSE(world.drives[1].enabled());

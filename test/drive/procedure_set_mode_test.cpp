@@ -33,13 +33,14 @@ TEST(SetModeProcedure, SwitchesAnEnabledAxisAtStandstillWithoutMotion) {
 }
 
 /// Modes of streamed set-points want bit 4, as interpolated position does.
-AxisConfig withBit4() {
+DriveProfile profileWithBit4() {
   DriveProfile profile = testProfile();
   for (ModeSpec& mode : profile.modes) {
     if (mode.cyclic) mode.controlword_bits = 0x10;
   }
-  return testConfig(profile);
+  return profile;
 }
+AxisConfig withBit4() { return testConfig(profileWithBit4()); }
 
 /// Counts how often bit 4 rises while the drive is in another mode than `mode`.
 void countEdges(Bench& bench, int mode, int& edges) {
@@ -86,14 +87,23 @@ TEST(SetModeProcedure, BitsOfTheModeThatFollowsAHomingBeginNoOther) {
 }
 
 TEST(SetModeProcedure, BitsWaitForADriveThatTakesItsModeOnceItIsEnabled) {
-  AxisConfig config = withBit4();
-  Bench bench(config);
+  DriveProfile profile = profileWithBit4();
+  profile.mode_change.shown_when_enabled = true;
+  profile.mode_change.again = ModeChange::Again::same;
+  Bench bench(testConfig(profile));
   ASSERT_TRUE(bench.boot());
   bench.drive.mode = 6;
   bench.drive.forgets_mode = true;
   int edges = 0;
+  bool was_enabled = false;
   countEdges(bench, 8, edges);
+  const auto count = bench.each_cycle;
+  bench.each_cycle = [&] {
+    count();
+    was_enabled |= bench.drive.state == FakeDrive::S::enabled && bench.drive.mode == 6;
+  };
   (void)bench.perform(ProcedureKind::enable);
+  EXPECT_TRUE(was_enabled) << "in the mode before";
   EXPECT_EQ(edges, 0);
 }
 

@@ -37,7 +37,7 @@ std::string lapse(const drive::ProcedureRequest& request, const drive::Axis& axi
   const bool enabled = state.state == drive::State::operation_enabled;
   const std::string now = std::string("it is ") + toString(state.state);
   if (tellsWhatItIs(request.kind) && !state.feedback_valid) {
-    return cause + "it gives no fresh statusword and position any more";
+    return cause + "it gives no fresh statusword and position any more: recover";
   }
   switch (request.kind) {
     case ProcedureKind::recover:
@@ -323,7 +323,7 @@ void ProcedureJob::withdrawEnabling(const std::string& why) {
 void ProcedureJob::Entry::watchWaiting() {
   const fieldbus::Device& device = axis->device();
   if (ready && (!device.ready() || device.bootUps() != boot_ups)) {
-    refuse("its drive was lost, or has restarted, while it waited");
+    return refuse("its drive was lost, or has restarted, while it waited: call it again");
   }
   const drive::ProcedureStatus& status = axis->procedure();
   if (seen && status.id != id && stops(status.kind)) withdraw(toString(status.kind));
