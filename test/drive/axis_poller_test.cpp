@@ -61,6 +61,8 @@ TEST_F(AxisPollerTest, EachLookReadsOnce) {
   EXPECT_EQ(pass(10s, kError, 100ms), 100);
   pass(2500ms, kError);
   EXPECT_EQ(poller.value(item, now), nullptr) << "nobody has looked for long";
+  pass(8ms, kError);
+  EXPECT_FALSE(poller.value(item).fresh);
 }
 
 TEST_F(AxisPollerTest, ManyLooksReadNoOftenerThanTheIntervalAndDelayNothingElse) {
