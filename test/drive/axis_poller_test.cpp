@@ -90,8 +90,8 @@ TEST_F(AxisPollerTest, EachValueCarriesTheTimeOfItsAnswerAndIsUnknownOnceItIsToo
 
 TEST_F(AxisPollerTest, WhatSomebodyElseHasReadIsFreshForAsLong) {
   const int item = poller.add(velocity);
-  drive.unanswered_reads.insert(kVelocity);
-  pass(100ms, kVelocity);
+  drive.read_aborts[kVelocity] = 0x06020000;  // it is not asked for any more
+  pass(200ms, kVelocity);
   EXPECT_FALSE(poller.value(item).fresh);
   poller.put(item, 9, now);
   EXPECT_TRUE(poller.value(item).fresh);
