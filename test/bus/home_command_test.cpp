@@ -223,6 +223,23 @@ TEST_F(HomeCommandTest, StoppedByAHaltItSaysSo) {
   EXPECT_FALSE(homing(0));
 }
 
+TEST_F(HomeCommandTest, AMotorThatDoesNotComeToRestIsTold) {
+  test::FakeDrive& elbow = world.drives[1];
+  elbow.homing_is_slow = true;
+  const auto answers = home({"elbow"});
+  world.run(200ms);
+  ASSERT_TRUE(world.call(CancelHomeCommand{7}).success);
+  const Time cancelled = world.now;
+  while (answers->empty() && world.now < cancelled + 20s) {
+    elbow.disturbance += 500;  // its load drags it along
+    world.run(10ms);
+  }
+  ASSERT_FALSE(answers->empty());
+  EXPECT_GT(world.now - cancelled, 5s);
+  EXPECT_TRUE(answers->front().stopped);
+  EXPECT_THAT(answers->front().message, HasSubstr("; the axis still moves"));
+}
+
 TEST_F(HomeCommandTest, AHaltOfOneAndAFailureOfAnotherAreAFailure) {
   world.drives[1].homing_is_slow = world.drives[2].homing_fails = true;
   const auto answers = home({});

@@ -118,6 +118,42 @@ TEST(HomeCommand, CancelledAtAnyMomentTheMotorStandsInTheModeFromBeforeAndHomesA
   }
 }
 
+/// Velocity of the left motor when it is answered, rad/s.
+/// @param act is done while it searches
+double velocityAtTheAnswer(HomingScene& scene, const std::function<void()>& act) {
+  const auto answer = scene.home();
+  EXPECT_TRUE(scene.runUntil([&] { return scene.velocity("left") < -0.7; }, 5s));
+  std::optional<double> velocity;
+  scene.watch([&] {
+    if (answer->has_value() && !velocity) velocity = scene.velocity("left");
+  });
+  act();
+  EXPECT_TRUE(scene.runUntil([&] { return velocity.has_value(); }, 8s));
+  EXPECT_TRUE((*answer)->stopped) << (*answer)->message;
+  EXPECT_LT(scene.seen("right").travel(), 1e-3);
+  return velocity.value_or(1e9);
+}
+
+TEST(HomeCommand, StoppedByAnotherCallItIsAnsweredAtRest) {
+  for (const ProcedureKind by :
+       {ProcedureKind::halt, ProcedureKind::quick_stop, ProcedureKind::disable}) {
+    HomingScene scene(oneByOne());
+    EXPECT_NEAR(velocityAtTheAnswer(scene, [&] { scene.begin(by, "left"); }), 0.0, 0.01)
+        << toString(by);
+  }
+}
+
+TEST(HomeCommand, CancelledItIsAnsweredAtRestThoughAFaultBrakesIt) {
+  HomingScene scene(oneByOne());
+  const auto cancelThenFault = [&] {
+    scene.cancel();
+    scene.run(20ms);
+    EXPECT_LT(scene.velocity("left"), -0.4);
+    scene.inject("left", "0x7305");
+  };
+  EXPECT_NEAR(velocityAtTheAnswer(scene, cancelThenFault), 0.0, 0.01);
+}
+
 TEST(HomeCommand, OneThatNeverFindsItsSwitchStopsByItselfAndKeepsLaterOrdersFromMoving) {
   HomingScene scene(
       genericPair(", homing: {method: 17, search_velocity: 0.8, acceleration: 4.0, timeout: 2.0}",

@@ -2,67 +2,16 @@
 #include "bus/jobs/procedure_job.h"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
+#include "bus/jobs/procedure_lapse.h"
 #include "common/text.h"
-#include "motion/joint.h"
 
 namespace cia402::bus {
 namespace {
 
-/// What is told of an axis as it is, and not of what it does, takes its word.
-bool tellsWhatItIs(drive::ProcedureKind kind) {
-  using drive::ProcedureKind;
-  return kind == ProcedureKind::clear_faults || kind == ProcedureKind::set_mode ||
-         kind == ProcedureKind::home || kind == ProcedureKind::set_position;
-}
-
-std::string motionOf(const drive::AxisState& state) {
-  if (!state.feedback_valid) return "nothing tells whether it stands";
-  if (std::isnan(state.velocity)) return "it moves";
-  return "it moves (velocity " + motion::formatNumber(state.velocity) + ")";
-}
-
-/// Why what a procedure has achieved is not so any more; empty if it is.
-/// @param replaced another one was called since
-std::string lapse(const drive::ProcedureRequest& request, const drive::Axis& axis, bool replaced) {
-  using drive::ProcedureKind;
-  const drive::AxisState& state = axis.state();
-  const std::string began =
-      drive::jointName(axis.config()) + ": " + toString(request.kind) + " had succeeded, ";
-  const std::string cause = replaced
-                                ? began + "but " + toString(axis.procedure().kind) + " was called: "
-                                : began + "but ";
-  const bool enabled = state.state == drive::State::operation_enabled;
-  const std::string now = std::string("it is ") + toString(state.state);
-  if (tellsWhatItIs(request.kind) && !state.feedback_valid) {
-    return cause + "it gives no fresh statusword and position any more: recover";
-  }
-  switch (request.kind) {
-    case ProcedureKind::recover:
-      return axis.obstacle();
-    case ProcedureKind::enable:
-      return enabled ? std::string() : cause + now;
-    case ProcedureKind::disable:
-      if (!powerStageOff(state.state, state.statusword)) return cause + now;
-      return axis.mayMove() ? cause + motionOf(state) : std::string();
-    case ProcedureKind::clear_faults:
-      return isFault(state.state) ? cause + now : std::string();
-    case ProcedureKind::home:
-    case ProcedureKind::set_position:
-      return state.homed ? std::string() : cause + "it is not homed";
-    case ProcedureKind::set_mode:
-      if (axis.modeName() == drive::canonicalModeName(request.mode)) return {};
-      return cause + "it is in mode " + axis.modeName();
-    case ProcedureKind::halt:
-    case ProcedureKind::quick_stop:
-      if (replaced && enables(axis.procedure().kind)) return cause + now;
-      return axis.mayMove() ? cause + motionOf(state) : std::string();
-    default:
-      return {};
-  }
-}
+/// So long an answer waits for a motor at the most: its load may drag it along for ever.
+constexpr Duration kLongestStop{std::chrono::seconds(5)};
 
 }  // namespace
 
@@ -117,7 +66,7 @@ bool ProcedureJob::advance(Time now) {
   } else if (!manner_.held) {
     startDue(now);
   }
-  if (!ended() || awaitsNews(now)) return false;
+  if (!ended() || awaitsNews(now) || awaitsRest(now)) return false;
   judge();
   if (!all(Stage::succeeded) && allOrNone()) undo(now);
   return ended();
@@ -227,6 +176,26 @@ bool ProcedureJob::awaitsNews(Time now) const {
   });
 }
 
+/// A search for home that somebody ended is answered once the motors stand, whatever stopped them.
+bool ProcedureJob::awaitsRest(Time now) {
+  if (request_.kind != drive::ProcedureKind::home) return false;
+  if (!ended_) ended_ = now;
+  bool moves = false;
+  for (Entry& entry : entries_) {
+    if (!entry.comesToRest()) continue;
+    moves = true;
+    if (now >= *ended_ + kLongestStop) entry.message += "; the axis still moves";
+  }
+  return moves && now < *ended_ + kLongestStop;
+}
+
+bool ProcedureJob::Entry::comesToRest() const {
+  if (!unwanted || !begun || stage != Stage::failed) return false;
+  const drive::ProcedureStatus& last = axis->procedure();
+  const bool led_on = last.id != id && !stops(last.kind);
+  return !led_on && axis->state().feedback_valid && axis->mayMove();
+}
+
 void ProcedureJob::abandon(const std::string& why) {
   refuse(reply_, std::string(toString(request_.kind)) + ": " + why);
 }
@@ -244,6 +213,7 @@ void ProcedureJob::startDue(Time now) {
     const Result<std::uint32_t> started = entry.axis->start(request_, now);
     if (started) {
       entry.stage = Stage::running;
+      entry.begun = true;
       entry.id = *started;
     } else {
       entry.fail(started.error().message);

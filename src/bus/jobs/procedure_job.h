@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -68,6 +69,7 @@ class ProcedureJob final : public Job {
     bool ready = false;          ///< its device was, when the job was made,
     std::uint32_t boot_ups = 0;  ///< and had booted so often
     bool unwanted = false;       ///< if it has failed, then as somebody wanted it to end
+    bool begun = false;
 
     bool ended() const { return stage == Stage::succeeded || stage == Stage::failed; }
     void fail(std::string why);
@@ -76,6 +78,8 @@ class ProcedureJob final : public Job {
     /// The same, for somebody has called what stops it.
     void withdraw(const std::string& by);
     void watchWaiting();
+    /// It was to end, and its motor is still on its way to rest.
+    bool comesToRest() const;
   };
 
   /// @return true: it has ended
@@ -94,6 +98,7 @@ class ProcedureJob final : public Job {
   std::string undone(const drive::Axis& axis, bool back) const;
   void restoreMode(Entry& entry, Time now) const;
   bool awaitsNews(Time now) const;
+  bool awaitsRest(Time now);
   void judge();
   void skipRest();
   ProcedureReport answer() const;
@@ -104,6 +109,7 @@ class ProcedureJob final : public Job {
   Reply<ProcedureReport> reply_;
   std::string remark_;
   Manner manner_;
+  std::optional<Time> ended_;  ///< on the last axis; its motors may still move
 };
 
 }  // namespace cia402::bus
