@@ -98,7 +98,7 @@ void Calls::call(Call call, Request request, Duration bound) {
     *done = true;
     answered(call, answer);
     using Given = std::decay_t<decltype(answer)>;
-    if constexpr (std::is_same_v<Given, bus::ProcedureReport>) judgeCancelled(call, answer);
+    if constexpr (std::is_same_v<Given, bus::ProcedureReport>) judgeStopped(call, answer);
   };
   if constexpr (std::is_same_v<Request, bus::HomeCommand>) {
     line_.post(bus::Command(std::move(request), take));
@@ -134,24 +134,22 @@ void Calls::home(const Words& words) {
 
 void Calls::cancelHome() {
   if (!session_.stage.host().running()) return;
-  cancelled_ = last_home_;
   session_.stage.host().post(bus::Command(bus::CancelHomeCommand{last_home_}));
 }
 
-void Calls::judgeCancelled(const Call& call, const bus::ProcedureReport& report) {
+void Calls::judgeStopped(const Call& call, const bus::ProcedureReport& report) {
   using Source = Permits::Source;
-  if (!report.stopped || cancelled_ != last_home_) return;
+  if (!report.stopped) return;
   for (const bus::ProcedureReport::Axis& axis : report.axes) {
     const std::size_t i = axis.number;
     const Permits& permits = session_.permits;
     const bool led = std::max({permits.until(i, Source::stream), permits.until(i, Source::target),
                                permits.until(i, Source::trajectory)}) > session_.now();
-    // Another stop tells by itself when it is done.
-    const bool other = axis.message.find("was stopped by") != std::string::npos;
+    const bool begun = axis.message.find("not started") == std::string::npos;
     const bool stands = std::fabs(session_.truths[i].velocity) <= session_.stage.axes()[i].creep();
-    if (led || other || stands || axis.message.find("still moves") != std::string::npos) continue;
+    if (led || !begun || stands || axis.message.find("still moves") != std::string::npos) continue;
     session_.report("untrue_answer", session_.stage.axes()[i].name,
-                    call.verb + " was cancelled and is answered (" + axis.message +
+                    call.verb + " was ended and is answered (" + axis.message +
                         ") while the motor turns at " + number(session_.truths[i].velocity) +
                         " per s");
   }

@@ -54,8 +54,8 @@ class Calls {
   void call(const Words& words, Request request, Duration bound);
   template <typename Request>
   void call(Call call, Request request, Duration bound);
-  /// An action that was cancelled is answered once its motors stand.
-  void judgeCancelled(const Call& call, const bus::ProcedureReport& report);
+  /// A search for home that somebody ended is answered once its motors stand.
+  void judgeStopped(const Call& call, const bus::ProcedureReport& report);
   void endPermits(const Call& call, const bus::Answer& answer);
   bool waitsToHome(const Call& call, std::size_t axis) const;
   bool homesStill(std::size_t axis) const;
@@ -63,7 +63,7 @@ class Calls {
   Session& session_;
   Line& line_;
   std::list<Pending> pending_;
-  std::uint64_t last_home_ = 0, cancelled_ = 0;
+  std::uint64_t last_home_ = 0;
 };
 
 }  // namespace cia402::campaign

@@ -214,6 +214,11 @@ bool Proof::homeAll() {
       if (!call(verb, facts.name, facts.homing_timeout + 10s)) return false;
       if (answer_.success && !call("enable", facts.name, kRecoverTime)) return false;
     }
+    // A gantry may stand further apart than its window, by the way of the stop at its end: the
+    // first search ends there, and leaves that way to the second.
+    if (!answer_.success && facts.gantry) {
+      if (!enableAll() || !call(verb, facts.name, facts.homing_timeout + 10s)) return false;
+    }
     if (answer_.success) continue;
     noRecovery(facts.name, verb + " fails when all is well again: " + answer_.message);
     return false;

@@ -35,6 +35,8 @@ class Power final : public Oracle {
     const AxisFacts& facts = view.stage.axes()[i];
     if (view.now < view.conditions.axes[i].may_coast) return true;
     const Conditions& world = view.conditions;
+    // Held fast in a stop and let go, a rotor leaps, faster than it was: no stop seems to brake it.
+    if (view.now < world.axes[i].blocked) return true;
     const bool misses_master =
         view.now < world.foreign || view.now < world.host_late || view.now < world.axes[i].cut_off;
     if (misses_master && facts.watches_master && fades(truth, facts)) return true;
