@@ -127,7 +127,8 @@ void Proof::moveJoint(const config::GroupConfig& group, std::size_t joint) {
   if (session_.failed()) return;
   const double moved = facts.position(session_.truths) - from;
   const bool held = std::any_of(facts.axes.begin(), facts.axes.end(), [this](std::size_t axis) {
-    return session_.now() - session_.limited_at[axis] < 3s;  // by a switch at which it has its home
+    // By a switch at which it has its home.
+    return heldByFault(axis) || session_.now() - session_.limited_at[axis] < 3s;
   });
   if (held || std::fabs(moved - way) <= 0.5 * step) return;
   noRecovery(group.name, facts.name + " was told to move by " + number(way) +
