@@ -147,7 +147,7 @@ void Calls::judgeStopped(const Call& call, const bus::ProcedureReport& report) {
                                permits.until(i, Source::trajectory)}) > session_.now();
     const bool begun = axis.message.find("not started") == std::string::npos;
     const bool stands = std::fabs(session_.truths[i].velocity) <= session_.stage.axes()[i].creep();
-    if (led || !begun || stands || axis.message.find("still moves") != std::string::npos) continue;
+    if (led || !begun || stands || axis.message.find("it moves") != std::string::npos) continue;
     session_.report("untrue_answer", session_.stage.axes()[i].name,
                     call.verb + " was ended and is answered (" + axis.message +
                         ") while the motor turns at " + number(session_.truths[i].velocity) +

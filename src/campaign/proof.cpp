@@ -15,6 +15,7 @@ constexpr Duration kRecoverTime = 20s;
 constexpr const char* kDisableFirst = ": disable, then enable";  // the words of an axis
 constexpr const char* kDisableFor = "disable it first";
 constexpr const char* kOnSwitch = "limit switch";
+constexpr const char* kStopped = "home was stopped by quick_stop";
 constexpr const char* kFreeDrive = ", in the same drive, may be under power: disable it first";
 
 bool contains(const std::string& text, const char* words) {
@@ -217,7 +218,7 @@ bool Proof::homeAll() {
     }
     // A gantry may stand further apart than its window, by the way of the stop at its end: the
     // first search ends there, and leaves that way to the second.
-    if (!answer_.success && facts.gantry) {
+    if (!answer_.success && facts.gantry && contains(answer_.message, kStopped)) {
       if (!enableAll() || !call(verb, facts.name, facts.homing_timeout + 10s)) return false;
     }
     if (answer_.success) continue;

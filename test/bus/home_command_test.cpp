@@ -237,7 +237,23 @@ TEST_F(HomeCommandTest, AMotorThatDoesNotComeToRestIsTold) {
   ASSERT_FALSE(answers->empty());
   EXPECT_GT(world.now - cancelled, 5s);
   EXPECT_TRUE(answers->front().stopped);
-  EXPECT_THAT(answers->front().message, HasSubstr("; the axis still moves"));
+  EXPECT_THAT(answers->front().message, HasSubstr("; after 5 s it moves: see what drives it"));
+}
+
+TEST_F(HomeCommandTest, OneThatHasStoodAndIsLedOnKeepsNoAnswerBack) {
+  test::FakeDrive &elbow = world.drives[1], &wrist = world.drives[2];
+  elbow.homing_is_slow = wrist.homing_is_slow = true;
+  const auto answers = home({"elbow", "wrist"});
+  world.run(200ms);
+  ASSERT_TRUE(world.call(CancelHomeCommand{7}).success);
+  const Time cancelled = world.now;
+  while (answers->empty() && world.now < cancelled + 20s) {
+    (world.now < cancelled + 1s ? wrist : elbow).disturbance += 500;
+    world.run(10ms);
+  }
+  ASSERT_FALSE(answers->empty());
+  EXPECT_THAT(world.now - cancelled, AllOf(testing::Gt(1s), testing::Lt(2s)));
+  EXPECT_THAT(answers->front().message, Not(HasSubstr("it moves")));
 }
 
 TEST_F(HomeCommandTest, AHaltOfOneAndAFailureOfAnotherAreAFailure) {

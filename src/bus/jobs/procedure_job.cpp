@@ -6,6 +6,7 @@
 
 #include "bus/jobs/procedure_lapse.h"
 #include "common/text.h"
+#include "motion/joint.h"
 
 namespace cia402::bus {
 namespace {
@@ -180,20 +181,22 @@ bool ProcedureJob::awaitsNews(Time now) const {
 bool ProcedureJob::awaitsRest(Time now) {
   if (request_.kind != drive::ProcedureKind::home) return false;
   if (!ended_) ended_ = now;
+  const bool over = now >= *ended_ + kLongestStop;
   bool moves = false;
   for (Entry& entry : entries_) {
-    if (!entry.comesToRest()) continue;
+    if (entry.stage != Stage::failed || !entry.unwanted || !entry.may_move) continue;
     moves = true;
-    if (now >= *ended_ + kLongestStop) entry.message += "; the axis still moves";
+    if (!over) continue;
+    entry.message += "; after " + motion::formatNumber(toSeconds(kLongestStop)) + " s " +
+                     motionOf(entry.axis->state()) + ": see what drives it";
   }
-  return moves && now < *ended_ + kLongestStop;
+  return moves && !over;
 }
 
-bool ProcedureJob::Entry::comesToRest() const {
-  if (!unwanted || !begun || stage != Stage::failed) return false;
+void ProcedureJob::Entry::watchFailed() {
   const drive::ProcedureStatus& last = axis->procedure();
   const bool led_on = last.id != id && !stops(last.kind);
-  return !led_on && axis->state().feedback_valid && axis->mayMove();
+  may_move = may_move && !led_on && axis->state().feedback_valid && axis->mayMove();
 }
 
 void ProcedureJob::abandon(const std::string& why) {
@@ -213,7 +216,7 @@ void ProcedureJob::startDue(Time now) {
     const Result<std::uint32_t> started = entry.axis->start(request_, now);
     if (started) {
       entry.stage = Stage::running;
-      entry.begun = true;
+      entry.may_move = true;
       entry.id = *started;
     } else {
       entry.fail(started.error().message);
@@ -226,6 +229,7 @@ void ProcedureJob::watch() {
   for (Entry& entry : entries_) {
     if (entry.stage == Stage::waiting) entry.watchWaiting();
     if (entry.stage == Stage::running || entry.stage == Stage::restoring) watchRunning(entry);
+    if (entry.stage == Stage::failed) entry.watchFailed();
   }
 }
 

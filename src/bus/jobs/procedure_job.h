@@ -69,7 +69,7 @@ class ProcedureJob final : public Job {
     bool ready = false;          ///< its device was, when the job was made,
     std::uint32_t boot_ups = 0;  ///< and had booted so often
     bool unwanted = false;       ///< if it has failed, then as somebody wanted it to end
-    bool begun = false;
+    bool may_move = false;       ///< since it was begun; of those that have failed until they stand
 
     bool ended() const { return stage == Stage::succeeded || stage == Stage::failed; }
     void fail(std::string why);
@@ -78,8 +78,8 @@ class ProcedureJob final : public Job {
     /// The same, for somebody has called what stops it.
     void withdraw(const std::string& by);
     void watchWaiting();
-    /// It was to end, and its motor is still on its way to rest.
-    bool comesToRest() const;
+    /// It has failed: looks whether its motor stands, or whatever else moves it by now.
+    void watchFailed();
   };
 
   /// @return true: it has ended
@@ -109,7 +109,7 @@ class ProcedureJob final : public Job {
   Reply<ProcedureReport> reply_;
   std::string remark_;
   Manner manner_;
-  std::optional<Time> ended_;  ///< on the last axis; its motors may still move
+  std::optional<Time> ended_;  ///< on the last axis
 };
 
 }  // namespace cia402::bus

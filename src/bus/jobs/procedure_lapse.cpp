@@ -6,15 +6,12 @@
 #include "motion/joint.h"
 
 namespace cia402::bus {
-namespace {
 
 std::string motionOf(const drive::AxisState& state) {
   if (!state.feedback_valid) return "nothing tells whether it stands";
   if (std::isnan(state.velocity)) return "it moves";
   return "it moves (velocity " + motion::formatNumber(state.velocity) + ")";
 }
-
-}  // namespace
 
 bool tellsWhatItIs(drive::ProcedureKind kind) {
   using drive::ProcedureKind;
