@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <optional>
@@ -57,6 +58,26 @@ RunawayWatch::Led to(double place) { return to(place, place); }
 /// Where a motor is that accelerates from rest, rad/s^2.
 std::function<double(double)> accelerating(double acceleration) {
   return [=](double t) { return 0.5 * acceleration * t * t; };
+}
+
+/// A quick stop in which the joint moves so; one that runs away was looked at just before it.
+std::optional<double> escapesAt(const std::function<double(double)>& position, bool runs_away) {
+  RunawayWatch watch{kStandstill, kCount, kAcceleration, kCycle};
+  const auto measure = [&](Duration later) {
+    return watch.measure(position(toSeconds(later)), Time{} + 1s + later);
+  };
+  (void)measure(-40ms);
+  (void)measure(-20ms);
+  Duration later{};
+  if (runs_away) {
+    (void)measure(later);
+    later += watch.window();
+  }
+  watch.beginStop(Time{} + 1s, runs_away);
+  for (; later < 2s; later += watch.window()) {
+    if (measure(later) && watch.escapes()) return toSeconds(later);
+  }
+  return {};
 }
 
 TEST(RunawayWatch, NoticesAMotorThatTurnsTheOtherWay) {
@@ -186,24 +207,29 @@ TEST(RunawayWatch, TakesALeapForNoMotion) {
       joint.noticed([](double t) { return t < 1.0 ? 0.0 : 3.0; }, [](double) { return to(0.0); }));
 }
 
+// It comes to rest from a search for home that was cancelled, and the drive sets its zero still.
+TEST(RunawayWatch, TakesALeapOfOneThatComesToRestForNoMotion) {
+  for (int late = 0; late < 40; ++late) {  // when, in the windows of 20 ms
+    const double zero = 0.3 + 1e-3 * late;
+    const auto position = [=](double t) {
+      const double braked = std::min(t, 0.25);
+      return 1.6 - 0.25 * braked + 0.5 * braked * braked - (t < zero ? 0.0 : 1.6);
+    };
+    const auto slow = [=](double t) { return position(t) - 0.05 * std::min(t, 0.6); };
+    const auto nowhere = [](double) { return turning(0.0); };
+    Watched rests, creeps;
+    EXPECT_FALSE(rests.noticed(position, nowhere)) << zero;
+    EXPECT_FALSE(creeps.noticed(slow, nowhere)) << zero;
+    EXPECT_FALSE(escapesAt([&](double t) { return slow(t + 0.1); }, false)) << zero;
+    EXPECT_FALSE(escapesAt([&](double t) { return slow(t + 0.1); }, true)) << zero;
+  }
+}
+
 TEST(RunawayWatch, KnowsNothingAcrossAGap) {
   RunawayWatch watch{kStandstill, kCount, kAcceleration, kCycle};
   EXPECT_FALSE(watch.measure(0.0, Time{} + 1s));
   EXPECT_FALSE(watch.measure(-2.0, Time{} + 2s));
   EXPECT_EQ(watch.velocity(), 0.0);
-}
-
-/// A quick stop in which the joint moves so.
-std::optional<double> escapesAt(const std::function<double(double)>& position, bool runs_away) {
-  RunawayWatch watch{kStandstill, kCount, kAcceleration, kCycle};
-  (void)watch.measure(position(-0.02), Time{} + 980ms);
-  (void)watch.measure(position(0.0), Time{} + 1s);
-  watch.beginStop(Time{} + 1s, runs_away);
-  for (Duration later = watch.window(); later < 2s; later += watch.window()) {
-    const bool measured = watch.measure(position(toSeconds(later)), Time{} + 1s + later);
-    if (measured && watch.escapes()) return toSeconds(later);
-  }
-  return {};
 }
 
 TEST(RunawayWatch, AQuickStopThatBrakesIsLeftAlone) {
@@ -220,6 +246,35 @@ TEST(RunawayWatch, AQuickStopByWhichTheMotorGetsFasterDoesNotBrakeIt) {
   EXPECT_LE(*plain, 0.121);
   ASSERT_TRUE(after);
   EXPECT_LE(*after, 0.041);
+}
+
+// Braked for 0.3 s, then driven on.
+TEST(RunawayWatch, AQuickStopThatLetsTheMotorGoDoesNotBrakeIt) {
+  const auto lets_go = [](double t) {
+    const double braked = std::min(std::max(t, 0.0), 0.3), on = std::max(0.0, t - 0.3);
+    return 2.0 * std::min(t, 0.3) - 2.0 * braked * braked + 0.8 * on + 10.0 * on * on;
+  };
+  const auto at = escapesAt(lets_go, false);
+  ASSERT_TRUE(at);
+  EXPECT_GT(*at, 0.3);
+  EXPECT_LE(*at, 0.381) << "four windows; it has a speed of 2.4 rad/s by then";
+}
+
+// A frame that comes late says where the motor was: one window is seen too slow, the next too fast.
+TEST(RunawayWatch, AQuickStopThatBrakesIsLeftAloneThoughPositionsComeLate) {
+  const auto braked = [](double t) {
+    const double braking = std::clamp(t, 0.0, 1.0);
+    return 2.0 * std::min(t, 1.0) - braking * braking;
+  };
+  for (int one = 0; one < 40; ++one) {
+    for (int other = one; other < 40; ++other) {
+      const auto late = [&](double t) {
+        const long window = std::lround(t / 0.02);
+        return braked(window == one || window == other ? t - 0.008 : t);
+      };
+      EXPECT_FALSE(escapesAt(late, false)) << "the windows " << one << " and " << other;
+    }
+  }
 }
 
 // A drive may take its time; a motor that ran away before may not.

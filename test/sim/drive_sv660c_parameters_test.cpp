@@ -154,6 +154,7 @@ TEST_F(Sv660cParameter, MindsItsPositionLimitsWhereTheyAreOn) {
 // --- ip [L852-949] ---------------------------------------------------------------------------
 
 struct Sv660cIp : Sv660cBench {
+  using Sv660cBench::Sv660cBench;
   void SetUp() override {
     bench.write(0x1400, 1, 0x80000201, 4);
     bench.write(0x1600, 0, 0, 1);
@@ -208,6 +209,29 @@ TEST_F(Sv660cIp, StandsWhereBit4IsGone) {
   EXPECT_NEAR(bench.drive->truth(bench.now).position_turns, stood, 1e-3);
   for (int i = 0; i < 20; ++i) cycle(2000);
   EXPECT_NEAR(bench.drive->truth(bench.now).position_turns, 2000.0 / 8388608, 1e-6);
+}
+
+struct Sv660cIpAtASwitch : Sv660cIp {
+  Sv660cIpAtASwitch() : Sv660cIp(mechanics()) {}
+  static AxisMechanics mechanics() {
+    AxisMechanics mechanics;
+    mechanics.negative_limit_switch = -0.001;
+    return mechanics;
+  }
+};
+
+// The set-point before lies beyond the switch still, and is gone to first.
+TEST_F(Sv660cIpAtASwitch, IsCalledBackWithoutGoingBeyondIt) {
+  for (int counts = 0; counts > -20000; counts -= 200) cycle(counts);
+  const double stood = bench.drive->truth(bench.now).position_turns;
+  EXPECT_NEAR(stood, -0.001, 4e-5) << "a cycle further, and a stop";
+  EXPECT_NE(now(0x6041) & 0x0800, 0U);
+  const auto here = static_cast<std::int32_t>(now(0x6064));
+  for (int i = 0; i < 40; ++i) {
+    if (i % 8 == 0) cycle(here, 0x1F, 0.0);
+    bench.run(ms(0.5));
+    EXPECT_NEAR(bench.drive->truth(bench.now).position_turns, stood, 1e-6) << i;
+  }
 }
 
 // H0E.13 = 0: a quarter of the period, 1 ms of 4.

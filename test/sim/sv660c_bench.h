@@ -12,8 +12,10 @@ namespace cia402::sim {
 struct Sv660cBench : testing::Test {
   static constexpr std::uint32_t kInvalidValue = 0x06090030, kReadOnly = 0x06010002,
                                  kDeviceState = 0x08000022;
-  DriveBench bench{"sv660c"};
-  Sv660cBench() { bench.run(ms(700)); }  // until it has booted
+  DriveBench bench;
+  explicit Sv660cBench(const AxisMechanics& mechanics = {}) : bench("sv660c", mechanics) {
+    bench.run(ms(700));  // until it has booted
+  }
 
   /// Bits 0 to 9 of 6041h, as the manual's table tells them; in `word` of an SDO answer.
   int word() { return static_cast<int>(bench.read(0x6041) & 0x3FF); }

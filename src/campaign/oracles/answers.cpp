@@ -60,7 +60,9 @@ class Answers final : public Oracle {
       // One that was homed before the others takes commands again.
       const bool commanded =
           call.verb == "home" && call.axes.size() > 1 && view.permits.given(i) > call.at;
-      if (says(kStands) && !says_so && !idle && !commanded && !lately(seen.still)) {
+      // One that stood held fast, and was let go just then, leaps.
+      const bool leaps = view.now < view.conditions.axes[i].blocked;
+      if (says(kStands) && !says_so && !idle && !commanded && !leaps && !lately(seen.still)) {
         report(view, i,
                call.verb + " is answered with success (" + answer.message +
                    ") while the motor turns at " + number(view.truths[i].velocity) + " per s");

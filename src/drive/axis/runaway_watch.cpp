@@ -15,10 +15,17 @@ constexpr double kFar = 3.0, kFarHeld = 10.0;
 /// Faster than it was by more than that it is accelerated, for a window is a few positions long,
 /// each of them late or early by a cycle.
 constexpr double kFaster = 1.3;
+/// So many times as fast as in the window before, it is no motion as long as it is seen once: a
+/// drive may set its zero late.
+constexpr double kLeap = 5.0;
 /// A motor that ran away, and gets faster by that in a quick stop, is not braked; nor one that has
 /// not got slower by that in the end.
 constexpr double kAgain = 1.1, kSlower = 0.95;
 constexpr int kReactionWindows = 2, kBrakingWindows = 8;
+/// Others are judged by the mean of the last windows against the slowest such mean, of more
+/// windows: where frames are late, one window tells of half as much or twice as much as the motor
+/// does.
+constexpr std::size_t kLately = 3, kSlowest = 6;
 /// s, until a drive does what it is told; it goes on with what it was told before.
 constexpr double kReaction = 0.1;
 constexpr Duration kShortest{std::chrono::milliseconds(20)};
@@ -35,8 +42,9 @@ RunawayWatch::RunawayWatch(double standstill, double resolution, double accelera
       acceleration_(acceleration) {}
 
 void RunawayWatch::forget() {
-  started_ = measured_ = false;
+  started_ = measured_ = leapt_ = false;
   way_ = velocity_ = velocity_before_ = 0.0;
+  placed_ = 0;
 }
 
 bool RunawayWatch::measure(double position, Time stamp) {
@@ -48,6 +56,8 @@ bool RunawayWatch::measure(double position, Time stamp) {
   if (known) velocity_ = (position - position_) / toSeconds(took);
   if (known && !measured_) velocity_before_ = velocity_;
   measured_ = known;
+  const double leap = kLeap * std::fabs(velocity_before_) + clearly_;
+  leapt_ = !leapt_ && std::fabs(velocity_) > leap;
   position_before_ = position_;
   position_ = position;
   stamp_ = stamp;
@@ -70,7 +80,7 @@ bool RunawayWatch::runsAway(const Led& led) {
     return false;
   }
   const double way = std::copysign(1.0, velocity_);
-  if (way_ != way) {  // what is seen once may be a leap of what is measured
+  if (way_ != way || leapt_) {  // what is seen once may be a leap of what is measured
     way_ = way;
     from_ = position_before_;
     speed_ = std::max(way * velocity_before_, std::min(way * velocity_, fastestLed(led, way)));
@@ -92,21 +102,36 @@ void RunawayWatch::beginStop(Time now, bool runs_away) {
   stop_ = now;
   ran_away_ = runs_away;
   judged_ = 0;
+  placed_ = 0;
   speed_ = began_ = std::fabs(velocity_);
   way_ = 0.0;
 }
 
+/// Of the last windows of a quick stop, or of as many as there were.
+double RunawayWatch::meanSpeed(std::size_t windows) const {
+  const std::size_t over = std::min({windows, placed_ - 1, places_.size() - 1});
+  if (over == 0) return std::fabs(velocity_);
+  const Place& last = places_[(placed_ - 1) % places_.size()];
+  const Place& first = places_[(placed_ - 1 - over) % places_.size()];
+  return std::fabs(last.position - first.position) / toSeconds(last.stamp - first.stamp);
+}
+
 bool RunawayWatch::escapes() {
+  if (leapt_) placed_ = 0;
+  places_[placed_++ % places_.size()] = {position_, stamp_};
   if (stamp_ < stop_ + kReactionWindows * window_) return false;
-  const double speed = std::fabs(velocity_);
-  if (ran_away_ && speed > kAgain * speed_) return true;
-  if (ran_away_ && stamp_ >= stop_ + kBrakingWindows * window_ && speed > kSlower * began_) {
-    return true;
-  }
+  if (leapt_) return false;
   const int judged = judged_++;
-  if (judged > 1 && speed > kFaster * speed_ + clearly_) return true;
+  if (ran_away_) {
+    const double speed = std::fabs(velocity_);
+    if (speed > kAgain * speed_) return true;
+    speed_ = std::min(speed_, speed);
+    return stamp_ >= stop_ + kBrakingWindows * window_ && speed > kSlower * began_;
+  }
+  if (judged > 1 && meanSpeed(kLately) > kFaster * speed_ + clearly_) return true;
   // The drive brakes by the second one.
-  speed_ = judged > 1 || ran_away_ ? std::min(speed_, speed) : speed;
+  const double slowest = meanSpeed(kSlowest);
+  speed_ = judged > 1 ? std::min(speed_, slowest) : slowest;
   return false;
 }
 

@@ -1,7 +1,9 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 
 #include "cia402_driver/common/time.h"
@@ -66,6 +68,7 @@ class RunawayWatch {
 
  private:
   double fastestLed(const Led& led, double way) const;
+  double meanSpeed(std::size_t windows) const;
 
   /// Faster than it is led by more than that it is not led.
   static constexpr double kAhead = 1.25;
@@ -76,6 +79,7 @@ class RunawayWatch {
   double distance_;                          ///< that an error of control may take, rad or m
   double acceleration_;                      ///< rad/s^2 or m/s^2
   bool started_ = false, measured_ = false;  ///< a window has begun; one has ended
+  bool leapt_ = false;                       ///< in the last one
   double position_ = 0.0, position_before_ = 0.0, velocity_ = 0.0, velocity_before_ = 0.0;
   Time stamp_{};
   double way_ = 0.0;    ///< 1 or -1 while it moves away, which way; else 0
@@ -85,6 +89,12 @@ class RunawayWatch {
   double began_ = 0.0;  ///< when it was so fast, rad/s or m/s
   bool ran_away_ = false;
   int judged_ = 0;  ///< windows of that
+  struct Place {
+    double position;
+    Time stamp;
+  };
+  std::array<Place, 7> places_{};  ///< of the last windows of a quick stop,
+  std::size_t placed_ = 0;         ///< so many of them in all
 };
 
 }  // namespace cia402::drive

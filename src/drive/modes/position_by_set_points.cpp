@@ -61,6 +61,7 @@ void PositionBySetPoints::reset(std::uint64_t raw) {
   held_ = kUnknown;
   velocity_ = acceleration_ = 0.0;
   next_ = Time::min();
+  stops_after_ = kNever;
 }
 
 /// What is to count though it may be the same as before.
@@ -205,6 +206,7 @@ void PositionBySetPoints::announced(Time now) {
 
 const char* PositionBySetPoints::handOver(std::uint64_t& raw, Time now) {
   watchStream();
+  if (stops_after_ != kNever) stopWhereItGoes();
   offerNext(now);
   const bool offered = handshake_.pending();
   const char* waiting = handshake_.waitingFor();
@@ -228,17 +230,27 @@ double PositionBySetPoints::surelyStops(double speed) const {
 }
 
 /// The drive has gone on, and stands at the last set-point that it has, or comes to stand there.
-/// That replaces one that it was not told to take yet, by which it would set off once more. Where
-/// that set-point is further away than it takes to stop, it is to stop before.
-bool PositionBySetPoints::late(Time /*now*/) {
+/// That replaces one that it was not told to take yet, by which it would set off once more.
+bool PositionBySetPoints::late(Time now) {
   const double speed = std::isfinite(state().velocity) ? state().velocity : 0.0;
   const bool moves = !sent().atRest() || std::fabs(speed) > axis().config.standstill_velocity;
   if (!moves || !state().feedback_valid) return moves;
-  const double way = std::isfinite(held_) ? held_ - state().position : 0.0;
-  const double nearest = surelyStops(std::fabs(speed));
-  sent().rest(SetPointKind::stream, state().position + std::clamp(way, -nearest, nearest));
+  sent().rest(SetPointKind::stream, std::isfinite(held_) ? held_ : state().position);
   velocity_ = acceleration_ = 0.0;
+  stops_after_ = now;
   return true;
+}
+
+/// After a late cycle: where the last set-point is further away than it takes to stop, it is to
+/// stop before. What was measured before that cycle does not tell where that is.
+void PositionBySetPoints::stopWhereItGoes() {
+  if (state().stamp <= stops_after_) return;
+  stops_after_ = kNever;
+  if (!state().feedback_valid || !sent().atRest()) return;
+  const double speed = std::isfinite(state().velocity) ? std::fabs(state().velocity) : 0.0;
+  const double way = sent().value() - state().position, nearest = surelyStops(speed);
+  if (std::fabs(way) <= nearest) return;
+  sent().rest(SetPointKind::stream, state().position + std::copysign(nearest, way));
 }
 
 }  // namespace cia402::drive

@@ -28,7 +28,9 @@ class PositionBySetPoints : public CyclicPosition {
 
   /// It may set off once it has the set-point.
   bool goalAhead() const override { return handshake_.busy(); }
-  bool mayTurnBack(Time /*now*/, Time /*seen_moving*/) const override { return handshake_.busy(); }
+  bool mayTurnBack(Time now, Time seen_moving) const override {
+    return handshake_.busy() || comesBack(now, seen_moving);
+  }
 
  private:
   /// A set-point: rad or m, per s, and per s^2.
@@ -50,6 +52,7 @@ class PositionBySetPoints : public CyclicPosition {
   double fastest() const;
   double slowest() const;
   double usual() const;
+  void stopWhereItGoes();
   void offerNext(Time now);
   void announced(Time now);
   void send(const ModeChannel::Offset& object, double value);
@@ -67,7 +70,8 @@ class PositionBySetPoints : public CyclicPosition {
   std::uint64_t rest_raw_ = 0;                  ///< where it rests, as the drive was told
   bool rests_ = true;                           ///< that was the last thing it was told
   bool called_back_ = false;                    ///< from wherever the drive has led it
-  Time next_ = Time::min();                     ///< no set-point under way before
+  Time stops_after_ = kNever;  ///< feedback newer than this tells where it can stop
+  Time next_ = Time::min();    ///< no set-point under way before
 };
 
 }  // namespace cia402::drive

@@ -2,8 +2,17 @@
 #include "drive/modes/position_control.h"
 
 #include <algorithm>
+#include <cmath>
+
+#include "drive/axis/standstill.h"
 
 namespace cia402::drive {
+namespace {
+
+/// Of two places that count as one: so far from its stop point a drive may have gone beyond it.
+constexpr double kOffStopPoint = 0.25;
+
+}  // namespace
 
 void PositionControl::place() { convertBy(coordinates().ofTarget(channel().conversion)); }
 
@@ -41,6 +50,14 @@ SetPointHandshake::Input PositionControl::handshakeInput() const {
 void PositionControl::insist(const SetPointHandshake& handshake) const {
   const OutputObject& target = channel().target;
   if (handshake.insists() && target.mapped()) axis().image.sendAgain(target.slot);
+}
+
+bool PositionControl::comesBack(Time now, Time seen_moving) const {
+  const double tolerance = feedback().standstill().tolerance();
+  const double away = std::fabs(sent().value() - state().position);
+  const double slow = tolerance / toSeconds(Standstill::kWindow);  // per second
+  const Duration unseen = fromSeconds(slow / stopDeceleration(axis().config)) + Standstill::kWindow;
+  return away > kOffStopPoint * tolerance && now < seen_moving + unseen;
 }
 
 Duration PositionControl::wayBack(double) const { return kReactionCycles * axis().config.cycle; }

@@ -18,6 +18,10 @@ class PositionControl : public ModeControl {
   Duration wayBack(double away) const override;
 
  protected:
+  /// A drive that has passed the place where it is to stop goes back to it, and where it turns it
+  /// seems to stand. One that stands for longer than it takes to be seen to move again is held
+  /// there.
+  bool comesBack(Time now, Time seen_moving) const;
   /// What a handshake is to know of this cycle.
   SetPointHandshake::Input handshakeInput() const;
   /// Has the target leave with this cycle where the handshake insists on it.

@@ -12,8 +12,6 @@ namespace {
 constexpr int kPlanningCycles = 4;
 /// Of the way that braking takes, at least, a stop point is to be ahead.
 constexpr double kReachable = 0.98;
-/// Of two places that count as one: so far from its stop point a drive may have gone beyond it.
-constexpr double kOffStopPoint = 0.25;
 
 }  // namespace
 
@@ -138,14 +136,6 @@ bool ProfilePosition::goalAhead() const {
   const double away = std::fabs(sent().value() - state().position);
   const bool reached = state().target_reached && !spec().handover.queued;
   return !reached && away > feedback().standstill().tolerance();
-}
-
-bool ProfilePosition::mayTurnBack(Time now, Time seen_moving) const {
-  const double tolerance = feedback().standstill().tolerance();
-  const double away = std::fabs(sent().value() - state().position);
-  const double slow = tolerance / toSeconds(Standstill::kWindow);  // per second
-  const Duration unseen = fromSeconds(slow / stopDeceleration(axis().config)) + Standstill::kWindow;
-  return away > kOffStopPoint * tolerance && now < seen_moving + unseen;
 }
 
 /// What the drive has planned may be on its way still: it turns round and comes back.

@@ -34,10 +34,10 @@ class ProfilePosition : public PositionControl {
   void beginHalt() override;
   void endHalt() override { stop_point_after_ = kNever; }
   void lateInHalt(Time now) override;
-  /// Halted by a stop point that it has passed, since that reached it late, a drive goes back to
-  /// it, and where it turns it seems to stand. One that stands for longer than it takes to be seen
-  /// to move again is held there.
-  bool mayTurnBack(Time now, Time seen_moving) const override;
+  /// A stop point may reach the drive late.
+  bool mayTurnBack(Time now, Time seen_moving) const override {
+    return comesBack(now, seen_moving);
+  }
   Duration wayBack(double away) const override;
 
  private:

@@ -37,12 +37,13 @@ void CyclicPositions::target(double seconds, double into) {
   if (axis_.mode->delayed) {
     target = std::exchange(pending_, target).value_or(axis_.demand.interpolator.position());
   }
+  led_ = target;
   axis_.demand.interpolator.moveTo(target, seconds, into);
 }
 
 /// A set-point that reads like the present place is none to go to.
 bool CyclicPositions::goesOn() const {
-  return !last_ || std::fabs(*last_ - axis_.demand.position) > resolution_;
+  return !led_ || std::fabs(*led_ - axis_.demand.position) > resolution_;
 }
 
 void CyclicPositions::step(bool bit_4) {

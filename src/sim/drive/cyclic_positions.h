@@ -22,6 +22,7 @@ class CyclicPositions {
   void forget() {
     pending_.reset();
     last_.reset();
+    led_.reset();
   }
   /// Whether one was too far away since it was asked last (DriveDefinition::position_step).
   bool takeStep() { return std::exchange(far_, false); }
@@ -40,6 +41,7 @@ class CyclicPositions {
   MovingAxis& axis_;
   std::optional<double> pending_;  ///< true turns; ModeDefinition::delayed
   std::optional<double> last_;     ///< true turns, the set-point that came last
+  std::optional<double> led_;      ///< true turns, the set-point that the line leads to
   double resolution_ = 0.0;        ///< of its object, turns
   bool far_ = false;
 };
