@@ -56,8 +56,6 @@ bool RunawayWatch::measure(double position, Time stamp) {
   if (known) velocity_ = (position - position_) / toSeconds(took);
   if (known && !measured_) velocity_before_ = velocity_;
   measured_ = known;
-  const double leap = kLeap * std::fabs(velocity_before_) + clearly_;
-  leapt_ = !leapt_ && std::fabs(velocity_) > leap;
   position_before_ = position_;
   position_ = position;
   stamp_ = stamp;
@@ -72,6 +70,12 @@ double RunawayWatch::fastestLed(const Led& led, double way) const {
   return std::max(0.0, 0.5 * (ends + acceleration_ * toSeconds(window_)));
 }
 
+/// Once, in a window that is judged.
+bool RunawayWatch::leaps() {
+  leapt_ = !leapt_ && std::fabs(velocity_) > kLeap * std::fabs(velocity_before_) + clearly_;
+  return leapt_;
+}
+
 bool RunawayWatch::runsAway(const Led& led) {
   const bool towards = velocity_ > 0.0 ? position_ < led.highest : position_ > led.lowest;
   if (follows(led.velocity)) return false;
@@ -80,7 +84,7 @@ bool RunawayWatch::runsAway(const Led& led) {
     return false;
   }
   const double way = std::copysign(1.0, velocity_);
-  if (way_ != way || leapt_) {  // what is seen once may be a leap of what is measured
+  if (leaps() || way_ != way) {  // what is seen once may be a leap of what is measured
     way_ = way;
     from_ = position_before_;
     speed_ = std::max(way * velocity_before_, std::min(way * velocity_, fastestLed(led, way)));
@@ -101,6 +105,7 @@ bool RunawayWatch::runsAway(const Led& led) {
 void RunawayWatch::beginStop(Time now, bool runs_away) {
   stop_ = now;
   ran_away_ = runs_away;
+  leapt_ = false;
   judged_ = 0;
   placed_ = 0;
   speed_ = began_ = std::fabs(velocity_);
@@ -117,10 +122,11 @@ double RunawayWatch::meanSpeed(std::size_t windows) const {
 }
 
 bool RunawayWatch::escapes() {
-  if (leapt_) placed_ = 0;
+  const bool leap = leaps();
+  if (leap) placed_ = 0;
   places_[placed_++ % places_.size()] = {position_, stamp_};
   if (stamp_ < stop_ + kReactionWindows * window_) return false;
-  if (leapt_) return false;
+  if (leap) return false;
   const int judged = judged_++;
   if (ran_away_) {
     const double speed = std::fabs(velocity_);

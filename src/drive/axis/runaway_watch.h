@@ -68,6 +68,7 @@ class RunawayWatch {
 
  private:
   double fastestLed(const Led& led, double way) const;
+  bool leaps();
   double meanSpeed(std::size_t windows) const;
 
   /// Faster than it is led by more than that it is not led.
@@ -79,7 +80,7 @@ class RunawayWatch {
   double distance_;                          ///< that an error of control may take, rad or m
   double acceleration_;                      ///< rad/s^2 or m/s^2
   bool started_ = false, measured_ = false;  ///< a window has begun; one has ended
-  bool leapt_ = false;                       ///< in the last one
+  bool leapt_ = false;                       ///< in the one that was judged last
   double position_ = 0.0, position_before_ = 0.0, velocity_ = 0.0, velocity_before_ = 0.0;
   Time stamp_{};
   double way_ = 0.0;    ///< 1 or -1 while it moves away, which way; else 0
