@@ -256,6 +256,23 @@ TEST_F(HomeCommandTest, OneThatHasStoodAndIsLedOnKeepsNoAnswerBack) {
   EXPECT_THAT(answers->front().message, Not(HasSubstr("it moves")));
 }
 
+// It leads nothing on: the axis has to stand before.
+TEST_F(HomeCommandTest, OneWhoseModeIsToChangeIsAwaitedAtRest) {
+  test::FakeDrive& elbow = world.drives[1];
+  elbow.homing_is_slow = true;
+  const auto answers = home({"elbow"});
+  world.run(200ms);
+  ASSERT_TRUE(world.call(CancelHomeCommand{7}).success);
+  const Time cancelled = world.now;
+  const auto changed = world.begin(ProcedureKind::set_mode, "elbow", "cyclic_velocity");
+  while (answers->empty() && world.now < cancelled + 20s) {
+    if (world.now < cancelled + 1s) elbow.disturbance += 500;
+    world.run(10ms);
+  }
+  ASSERT_FALSE(answers->empty());
+  EXPECT_THAT(world.now - cancelled, AllOf(testing::Gt(1s), testing::Lt(2s)));
+}
+
 TEST_F(HomeCommandTest, AHaltOfOneAndAFailureOfAnotherAreAFailure) {
   world.drives[1].homing_is_slow = world.drives[2].homing_fails = true;
   const auto answers = home({});

@@ -195,7 +195,8 @@ bool ProcedureJob::awaitsRest(Time now) {
 
 void ProcedureJob::Entry::watchFailed() {
   const drive::ProcedureStatus& last = axis->procedure();
-  const bool led_on = last.id != id && !stops(last.kind);
+  const bool led_on =
+      last.id != id && enables(last.kind) && last.kind != drive::ProcedureKind::set_mode;
   may_move = may_move && !led_on && axis->state().feedback_valid && axis->mayMove();
 }
 
