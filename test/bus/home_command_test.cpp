@@ -262,15 +262,19 @@ TEST_F(HomeCommandTest, OneWhoseModeIsToChangeIsAwaitedAtRest) {
   elbow.homing_is_slow = true;
   const auto answers = home({"elbow"});
   world.run(200ms);
-  ASSERT_TRUE(world.call(CancelHomeCommand{7}).success);
-  const Time cancelled = world.now;
-  const auto changed = world.begin(ProcedureKind::set_mode, "elbow", "cyclic_velocity");
-  while (answers->empty() && world.now < cancelled + 20s) {
-    if (world.now < cancelled + 1s) elbow.disturbance += 500;
+  const Time halted = world.now;
+  decltype(world.begin(ProcedureKind::set_mode)) mode;
+  const auto halt = world.begin(ProcedureKind::halt, "elbow");
+  while (answers->empty() && world.now < halted + 20s) {
+    if (world.now < halted + 1s) elbow.disturbance += 500;
     world.run(10ms);
+    if (world.now == halted + 50ms) elbow.fault(0x8611);
+    if (world.now == halted + 100ms)
+      mode = world.begin(ProcedureKind::set_mode, "elbow", "cyclic_velocity");
   }
   ASSERT_FALSE(answers->empty());
-  EXPECT_THAT(world.now - cancelled, AllOf(testing::Gt(1s), testing::Lt(2s)));
+  EXPECT_TRUE(mode);
+  EXPECT_THAT(world.now - halted, AllOf(testing::Gt(1s), testing::Lt(2s)));
 }
 
 TEST_F(HomeCommandTest, AHaltOfOneAndAFailureOfAnotherAreAFailure) {
