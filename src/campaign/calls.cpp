@@ -146,8 +146,12 @@ void Calls::judgeStopped(const Call& call, const bus::ProcedureReport& report) {
     const bool led = std::max({permits.until(i, Source::stream), permits.until(i, Source::target),
                                permits.until(i, Source::trajectory)}) > session_.now();
     const bool begun = axis.message.find("not started") == std::string::npos;
+    // One that was homed before the others takes commands again, and may be braked after one.
+    const bool homed = axis.message.find(": homed by") != std::string::npos;
+    const bool commanded = homed && permits.given(i) > call.at;
     const bool stands = std::fabs(session_.truths[i].velocity) <= session_.stage.axes()[i].creep();
-    if (led || !begun || stands || axis.message.find("it moves") != std::string::npos) continue;
+    if (led || commanded || !begun || stands || axis.message.find("it moves") != std::string::npos)
+      continue;
     session_.report("untrue_answer", session_.stage.axes()[i].name,
                     call.verb + " was ended and is answered (" + axis.message +
                         ") while the motor turns at " + number(session_.truths[i].velocity) +
