@@ -22,10 +22,6 @@ constexpr double kLeap = 5.0;
 /// not got slower by that in the end.
 constexpr double kAgain = 1.1, kSlower = 0.95;
 constexpr int kReactionWindows = 2, kBrakingWindows = 8;
-/// Others are judged by the mean of the last windows against the slowest such mean, of more
-/// windows: where frames are late, one window tells of half as much or twice as much as the motor
-/// does.
-constexpr std::size_t kLately = 3, kSlowest = 6;
 /// s, until a drive does what it is told; it goes on with what it was told before.
 constexpr double kReaction = 0.1;
 constexpr Duration kShortest{std::chrono::milliseconds(20)};
@@ -114,7 +110,7 @@ void RunawayWatch::beginStop(Time now, bool runs_away) {
 
 /// Of the last windows of a quick stop, or of as many as there were.
 double RunawayWatch::meanSpeed(std::size_t windows) const {
-  const std::size_t over = std::min({windows, placed_ - 1, places_.size() - 1});
+  const std::size_t over = std::min(windows, placed_ - 1);
   if (over == 0) return std::fabs(velocity_);
   const Place& last = places_[(placed_ - 1) % places_.size()];
   const Place& first = places_[(placed_ - 1 - over) % places_.size()];

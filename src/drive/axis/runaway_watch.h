@@ -69,10 +69,15 @@ class RunawayWatch {
  private:
   double fastestLed(const Led& led, double way) const;
   bool leaps();
+  /// @param windows up to kSlowest
   double meanSpeed(std::size_t windows) const;
 
   /// Faster than it is led by more than that it is not led.
   static constexpr double kAhead = 1.25;
+  /// A quick stop is judged by the mean of the last windows against the slowest such mean, of more
+  /// windows: where frames are late, one window tells of half as much or twice as much as the motor
+  /// does.
+  static constexpr std::size_t kLately = 3, kSlowest = 6;
 
   Duration window_;
   double clearly_;                           ///< what is faster moves, rad/s or m/s
@@ -94,8 +99,8 @@ class RunawayWatch {
     double position;
     Time stamp;
   };
-  std::array<Place, 7> places_{};  ///< of the last windows of a quick stop,
-  std::size_t placed_ = 0;         ///< so many of them in all
+  std::array<Place, kSlowest + 1> places_{};  ///< of the last windows of a quick stop,
+  std::size_t placed_ = 0;                    ///< so many of them in all
 };
 
 }  // namespace cia402::drive
