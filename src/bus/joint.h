@@ -52,6 +52,8 @@ class Joint {
   virtual const drive::SetPoint& sent() const = 0;
   /// Still takes set-points, and nothing has ended its motion since sent() had so many breaks().
   virtual bool goesOn(std::uint32_t breaks) const = 0;
+  /// stop() was called, and its drive goes to a goal still, or may.
+  virtual bool endsGoal() const { return false; }
   /// Cycles were missed before this one.
   virtual bool late() const = 0;
 

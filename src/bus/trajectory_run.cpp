@@ -259,9 +259,9 @@ std::optional<TrajectoryOutcome> TrajectoryRun::standstill(Time now) {
     if (std::exchange(member.given_up, given_up) != given_up) member.rest.reset();
     member.rest.update(member.joint->position(), member.joint->stamp());
     const bool others = occupied(member);
-    const bool commanded =
-        member.dropped ? !member.joint->beingStopped() : member.joint->sent().atRest();
-    rest_commanded = rest_commanded && (others || commanded);
+    const Joint& joint = *member.joint;
+    const bool commanded = member.dropped ? !joint.beingStopped() : joint.sent().atRest();
+    rest_commanded = rest_commanded && (others || (commanded && !joint.endsGoal()));
     if (others || (restless == nullptr && !rests(member))) restless = &member;
   }
   if (!rest_commanded) commanded_rest_.reset();

@@ -205,6 +205,24 @@ TEST(ProcedureSteps, AHaltedAxisInAnotherModeIsNotSwitchedWhileTheDriveTakesNone
   EXPECT_THAT(status.message, HasSubstr("takes no mode while halted: disable, then enable"));
 }
 
+TEST(ProcedureSteps, HomeNeedsTheHaltReleasedWhereTheDriveTakesNoModeWhileHalted) {
+  DriveProfile profile = testProfile();
+  profile.mode_change.while_halted = false;
+  AxisConfig config = startsIn("profile_position", profile);
+  config.homing = HomingOptions();
+  config.homing->method = 17;
+  config.homing->required = false;
+  Bench bench(config);
+  ASSERT_TRUE(bench.boot());
+  ASSERT_TRUE(bench.enable());
+  ASSERT_TRUE(bench.perform(ProcedureKind::halt).success);
+  EXPECT_THAT(bench.axis.refusal({ProcedureKind::home, {}, 0.0}),
+              HasSubstr("cannot home: it is halted, and the drive takes no mode then; enable"));
+  ASSERT_TRUE(bench.enable());
+  EXPECT_TRUE(bench.perform(ProcedureKind::home).success);
+  EXPECT_EQ(bench.drive.homings, 1);
+}
+
 TEST(ProcedureSteps, OfSetPositionOpenTheLimitsAndCloseThem) {
   Bench bench;
   ASSERT_TRUE(bench.boot());

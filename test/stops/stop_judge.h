@@ -70,6 +70,7 @@ inline Braking brakingOf(Stop stop, const Mover& mover) {
   if (by_mode && !by_fault && stop != Stop::host_death) return brakingByMode(stop, mover);
   switch (stop) {
     case Stop::halt:
+    case Stop::empty_trajectory:
       return {kReactionS, effort ? effort_ramp : ramp};
     case Stop::quick_stop:
     case Stop::disable:
@@ -127,7 +128,8 @@ inline Bound boundOf(Stop stop, const Mover& mover, double late_s) {
     return {way + 0.002, way / speed + speed / (2.0 * mechanics.acceleration) + late_s + settling,
             speed * 1.02};
   }
-  if (stop == Stop::halt && by_goal) braking.reaction_s += 8 * kCycleS;  // the nearest goal
+  const bool halts = stop == Stop::halt || stop == Stop::empty_trajectory;
+  if (halts && by_goal) braking.reaction_s += 8 * kCycleS;  // the nearest goal
   const double reaction = braking.reaction_s + late_s;
   speed += pushOf(mover) * reaction;
   const double stopping = speed / braking.deceleration;
@@ -230,8 +232,8 @@ inline std::string number(double value) {
 
 /// Success of these says that the axis stands; of `set_mode` where the power stage is on.
 inline bool needsRest(const std::string& call, bool power) {
-  return call == "halt" || call == "quick_stop" || call == "set_position" || call == "disable" ||
-         (power && call == "set_mode");
+  return call == "halt" || call == "empty_trajectory" || call == "quick_stop" ||
+         call == "set_position" || call == "disable" || (power && call == "set_mode");
 }
 
 inline Verdict judge(const Case& tested, const Trace& trace) {
@@ -283,6 +285,7 @@ inline Verdict judge(const Case& tested, const Trace& trace) {
   if (!trace.taken && again > step) {
     find("starts again after it stood, by " + number(again) + " rad");
   }
+  if (trace.unanswered) find("a call is not answered");
   for (const Trace::Answered& answer : trace.answers) {
     const double turning = std::fabs(trace.samples[answer.at].velocity);
     if (answer.success && needsRest(answer.call, answer.power) && turning > 2 * kRest) {

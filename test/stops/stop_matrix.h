@@ -17,6 +17,7 @@ enum class Stop {
   halt,
   quick_stop,
   disable,
+  empty_trajectory,  ///< to the group of the joint, of which nobody leads it by a trajectory
   end_of_stream,
   set_mode,  ///< refused in motion; the stream ends with the call
   fault,     ///< to which the drive reacts by its ramp
@@ -24,9 +25,10 @@ enum class Stop {
   shutdown,
   host_death,
 };
-constexpr Stop kStops[] = {Stop::halt,           Stop::quick_stop, Stop::disable,
-                           Stop::end_of_stream,  Stop::set_mode,   Stop::fault,
-                           Stop::coasting_fault, Stop::shutdown,   Stop::host_death};
+constexpr Stop kStops[] = {
+    Stop::halt,          Stop::quick_stop, Stop::disable, Stop::empty_trajectory,
+    Stop::end_of_stream, Stop::set_mode,   Stop::fault,   Stop::coasting_fault,
+    Stop::shutdown,      Stop::host_death};
 
 /// What may come within 10 ms of it.
 enum class Follower {
@@ -48,9 +50,9 @@ enum class Follower {
 };
 
 inline const char* toString(Stop stop) {
-  constexpr const char* kNames[] = {"halt",           "quick_stop", "disable",
-                                    "end_of_stream",  "set_mode",   "fault",
-                                    "coasting_fault", "shutdown",   "host_death"};
+  constexpr const char* kNames[] = {"halt",          "quick_stop", "disable", "empty_trajectory",
+                                    "end_of_stream", "set_mode",   "fault",   "coasting_fault",
+                                    "shutdown",      "host_death"};
   return kNames[static_cast<int>(stop)];
 }
 
@@ -81,15 +83,23 @@ struct Mover {
 constexpr Duration kCycle = 4ms;
 constexpr Duration kCommandTimeout = 60ms;
 
-inline std::string yamlOf(const Mover& mover) {
+/// The mode in which the drive follows trajectories, without which no group has its joint.
+inline std::string trajectoryMode(const Mover& mover) {
+  if (mover.drive == "sv660c") return "interpolated_position";
+  return mover.drive == "id286_cnfa" ? "position_by_velocity" : "cyclic_position";
+}
+
+/// @param grouped the joint is one of a group, too
+inline std::string yamlOf(const Mover& mover, bool grouped) {
   const campaign::Family& family = campaign::family(mover.drive);
   const StopDrive& drive = stopDrive(mover.drive);
   std::string yaml =
-      "bus: {interface: sim, bitrate: 1000000, sync_period: 0.004, heartbeat: 0.1}\n"
+      "bus: {interface: sim, bitrate: 1000000, sync_period: 0.004, heartbeat: 0.1}\n" +
+      std::string(grouped ? "groups: {arm: {joints: [joint]}}\n" : "") +
       "axes:\n"
       "  joint: {node_id: 1, command_timeout: 0.06, drive: " +
       mover.drive + ", mode: " + mover.mode + ", modes: [" + mover.mode + ", " + mover.other_mode +
-      "],\n" + family.options;
+      (grouped ? ", " + trajectoryMode(mover) : std::string()) + "],\n" + family.options;
   if (!family.writes.empty()) yaml += "    write: [" + family.writes + "],\n";
   if (mover.coasts) yaml += "    command_timeout_action: coast,\n";
   if (drive.float_numbers) {

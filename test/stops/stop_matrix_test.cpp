@@ -25,11 +25,12 @@ bool whole() { return asked("CIA402_STOPS_WHOLE"); }
 bool few() { return asked("CIA402_STOPS_FEW"); }
 constexpr std::size_t kFew = 8;
 
-const LoadedRobot& robotOf(const Mover& mover) {
+const LoadedRobot& robotOf(Stop stop, const Mover& mover) {
   static std::map<std::string, LoadedRobot> robots;
-  const auto found = robots.find(mover.name());
+  const std::string yaml = yamlOf(mover, stop == Stop::empty_trajectory);
+  const auto found = robots.find(yaml);
   if (found != robots.end()) return found->second;
-  return robots.emplace(mover.name(), loadText(yamlOf(mover))).first->second;
+  return robots.emplace(yaml, loadText(yaml)).first->second;
 }
 
 struct Cell {
@@ -79,7 +80,7 @@ TEST_P(StopMatrix, ComesToRestWithinItsBound) {
   for (const Case& tested : casesOf(stop, mover, whole() || chosen != nullptr)) {
     if (chosen != nullptr && text(tested) != chosen) continue;
     if (index++ % kFew != 0 && few()) continue;
-    Play play(robotOf(mover), tested);
+    Play play(robotOf(stop, mover), tested);
     const Trace trace = play.play();
     const Verdict verdict = judge(tested, trace);
     ++played;

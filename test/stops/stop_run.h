@@ -31,7 +31,8 @@ struct Trace {
   std::vector<Answered> answers;
   /// A set-point that was taken after the stop: position, or NaN.
   std::optional<double> taken;
-  std::string problem;  ///< why the case could not be played
+  bool unanswered = false;  ///< a call was, by a process that lives
+  std::string problem;      ///< why the case could not be played
 };
 
 /// A robot of one axis, its computer and their time.
@@ -59,6 +60,7 @@ class Play {
     look();
     stop();
     while (!over()) step();
+    trace_.unanswered = asked_ > 0 && host_.running();
     return std::move(trace_);
   }
   const std::string& told() const { return told_; }
@@ -141,6 +143,9 @@ class Play {
         break;
       case Stop::disable:
         (void)call(drive::ProcedureKind::disable, {});
+        break;
+      case Stop::empty_trajectory:
+        stopGroup();
         break;
       case Stop::end_of_stream:
         break;
@@ -231,13 +236,33 @@ class Play {
     ++asked_;
     const auto reply = [this, answer, kind](const bus::Answer& given) {
       *answer = given;
-      const std::size_t at = trace_.samples.empty() ? 0 : trace_.samples.size() - 1;
-      const bool power = world_.drive(0).truth(host_.now()).power_stage_on;
-      trace_.answers.push_back({drive::toString(kind), at, given.success, power, given.message});
-      --asked_;
+      noteAnswer(drive::toString(kind), given.success, given.message);
     };
     host_.post(bus::Command(bus::ProcedureCommand{"joint", request}, reply));
     return answer;
+  }
+  /// Success is to say that the joint stands.
+  void stopGroup() {
+    const auto told = [this](bool stands, const std::string& message) {
+      noteAnswer("empty_trajectory", stands, message);
+    };
+    bus::TrajectoryCommand command;
+    command.group = "arm";
+    command.ended = [told](const bus::TrajectoryOutcome& outcome) {
+      told(outcome.message == "arm: stands", outcome.message);
+    };
+    ++asked_;
+    host_.post(bus::Command(command, [this, told](const bus::TrajectoryAnswer& given) {
+      if (given.success) return;
+      told(false, given.message);
+      trace_.problem = given.message;
+    }));
+  }
+  void noteAnswer(const std::string& call, bool success, const std::string& message) {
+    const std::size_t at = trace_.samples.empty() ? 0 : trace_.samples.size() - 1;
+    const bool power = world_.drive(0).truth(host_.now()).power_stage_on;
+    trace_.answers.push_back({call, at, success, power, message});
+    --asked_;
   }
   const StopDrive& drive() const { return stopDrive(case_.mover->drive); }
   void inject(const char* fault) {

@@ -34,6 +34,15 @@ class FamilyHomingResult : public testing::TestWithParam<FamilyMode> {
     scene.run(1s);
     EXPECT_LT(scene.seen("joint").travel(), 1e-4) << scene.told();
   }
+  /// It stands, also as its halt is released.
+  static void expectHeldAndReleased(Scene& scene) {
+    scene.forget();
+    scene.run(500ms);
+    const bus::Answer enabled = scene.procedure(ProcedureKind::enable, "joint");
+    EXPECT_TRUE(enabled.success) << enabled.message;
+    scene.run(1s);
+    EXPECT_LT(scene.seen("joint").travel(), 1e-4) << scene.told();
+  }
 };
 
 TEST_P(FamilyHomingResult, IsAnInterruptionWhereItIsHaltedAndTheAxisHolds) {
@@ -49,6 +58,41 @@ TEST_P(FamilyHomingResult, IsAnInterruptionWhereItIsHaltedAndTheAxisHolds) {
   EXPECT_THAT((*homed)->message, AllOf(HasSubstr("joint (node 1)"), HasSubstr("halt")));
   expectNotHomed(scene);
   EXPECT_TRUE(scene.truth("joint").power_stage_on) << "it is halted, not switched off";
+}
+
+// Its halt bit would keep the drive from searching: it ends with the call.
+TEST_P(FamilyHomingResult, FindsHomeAfterAHaltOfTheSearchBefore) {
+  Scene scene(loadText(familySearch(GetParam(), "17", "lower_limit_switch: -0.8")));
+  ASSERT_TRUE(scene.boot(20s)) << scene.told();
+  const auto homed = scene.begin(ProcedureKind::home, "joint");
+  ASSERT_TRUE(scene.runUntil([&] { return scene.velocity("joint") < -0.35; }, 8s)) << scene.told();
+  ASSERT_TRUE(scene.procedure(ProcedureKind::halt, "joint").success);
+  ASSERT_TRUE(scene.runUntil([&] { return homed->has_value(); }, 3s));
+  ASSERT_TRUE(scene.state("joint").halted);
+  const bus::Answer again = scene.procedure(ProcedureKind::home, "joint");
+  EXPECT_TRUE(again.success) << again.message;
+  EXPECT_NEAR(scene.position("joint"), -0.8, 0.05);
+  expectHeldAndReleased(scene);
+}
+
+TEST_P(FamilyHomingResult, IsFoundByAnAxisThatWasHaltedOnItsWayToAGoal) {
+  FamilyMode goals = GetParam();
+  goals.mode = "pp";
+  Scene scene(loadText(replaced(familySearch(goals, "17", "lower_limit_switch: -0.8"), "homing: {",
+                                "homing: {required: false, ")));
+  ASSERT_TRUE(scene.boot(20s)) << scene.told();
+  ASSERT_TRUE(scene.procedure(ProcedureKind::enable).success) << scene.told();
+  ASSERT_EQ(scene.setpoint("joint", 1.4), "");
+  scene.run(600ms);
+  ASSERT_GT(scene.velocity("joint"), 0.3);
+  ASSERT_TRUE(scene.procedure(ProcedureKind::halt, "joint").success);
+  scene.forget();
+  const double halted = scene.position("joint");
+  const bus::Answer answer = scene.procedure(ProcedureKind::home, "joint");
+  EXPECT_TRUE(answer.success) << answer.message;
+  EXPECT_LT(scene.seen("joint").highest, halted + 1e-3) << "it does not go on to its goal";
+  EXPECT_NEAR(scene.position("joint"), -0.8, 0.05);
+  expectHeldAndReleased(scene);
 }
 
 // Efforts that end leave the axis halted by the mode that braked it. The motor has just set off,

@@ -266,7 +266,9 @@ void Axis::follow(const std::string* who) { impl_->core.generator().commands().f
 const std::string* Axis::leader() const { return impl_->core.generator().commands().leader(); }
 bool Axis::late() const { return impl_->core.generator().late(); }
 bool Axis::setTarget(double value) { return impl_->core.generator().take(value); }
-void Axis::stopSetPoint(Duration over) { impl_->core.generator().stop(over); }
+void Axis::stopSetPoint(Duration over) { impl_->core.stops().endMotion(over); }
+
+bool Axis::endsGoal() const { return impl_->core.stops().endsGoal(); }
 
 double Axis::positionResolution() const { return impl_->core.feedback().positionResolution(); }
 std::string Axis::motionRefusal() const { return drive::motionRefusal(impl_->core, impl_->busy()); }

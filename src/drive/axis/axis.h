@@ -211,11 +211,14 @@ class Axis {
   const SetPoint& setPoint() const { return *shown_.set_point; }
   /// What one unit of the measured position is, rad or m.
   double positionResolution() const;
-  /// Brings the set-points to rest, by a ramp where they move, and ends a stream of commands.
-  /// Nothing if they do not move. @param over a ramp of positions is not harder than it takes to
-  /// come to rest in that time, or in front of a limit; zero: as hard as it may be, also one that
-  /// goes on more gently
+  /// Brings the set-points to rest, by a ramp where they move, and ends a stream of commands. A
+  /// goal that the drive goes to by itself ends as by a halt, see endsGoal(). Nothing if they do
+  /// not move. @param over a ramp of positions is not harder than it takes to come to rest in that
+  /// time, or in front of a limit; zero: as hard as it may be, also one that goes on more gently
   void stopSetPoint(Duration over = Duration::zero());
+  /// A goal that the drive goes to by itself is being ended by stopSetPoint(): its drive brakes, or
+  /// does not have the place where it stands for a goal yet.
+  bool endsGoal() const;
   /// Somebody gives the set-points of every cycle from now on by setTarget(), and streams are
   /// refused.
   /// @param who for messages, the name of a group; must outlive that. nullptr: nobody any more

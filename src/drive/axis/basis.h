@@ -35,6 +35,8 @@ struct AxisBasis {
   /// When what moves the axis, or could have, was seen or sent last: its set-points, or the drive
   /// by itself. What is measured tells of standstill only after that.
   Time moved_at = Time::min();
+  /// Of a halt by set-points, or of a goal that is being ended, see ModeControl.
+  bool ends_at_stop_point = false;
   Notices notices;
   Neighbours neighbours;
   std::set<ObjectId> written;  ///< by services, since the driver started or they were saved

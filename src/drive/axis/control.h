@@ -71,7 +71,10 @@ class Control {
   void setFaultReset(bool on) { fault_reset_ = on; }
   void setHomingStart(bool on) { homing_start_ = on; }
   bool homingStart() const { return homing_start_; }
-  void setHalt(bool on) { halt_ = on; }
+  void setHalt(bool on) {
+    halt_ = on;
+    braking_ = false;
+  }
   bool halt() const { return halt_; }
   /// The halt bit brakes an axis whose efforts are nobody's any more.
   void brake() { braking_ = halt_ = true; }

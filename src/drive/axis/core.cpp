@@ -137,7 +137,7 @@ void AxisCore::writeCommands(Time now) {
     const double target = generator_.target();
     if (const char* missing = generator_.send(now)) {
       tellNotTaken(*this, missing, target);
-      if (state().halted) leaveHalt(*this);
+      if (state().halted || stops_.endsGoal()) leaveHalt(*this);
     }
   } else {
     generator_.sendNeutral();

@@ -34,7 +34,7 @@ void Generator::enter() {
   commands_.forget();
   mode_ = &controlOf(active_.channel());
   mode_->place();
-  mode_->endHalt();  // of an earlier time
+  setHalted(false);  // of an earlier time
   given_ = kUnknown;
   neutralize();
 }
@@ -42,7 +42,7 @@ void Generator::enter() {
 void Generator::leave() {
   pushes_ = false;
   following_.end();
-  mode_->endHalt();
+  setHalted(false);
   mode_->reset(target_raw_);
   sent_.rest(mode_->kind(), SetPoint::kNone);
 }
@@ -116,7 +116,7 @@ void Generator::arrest(double velocity) {
 void Generator::lateCycle(Time now) {
   late_ = true;
   if (mode_->late(now)) giveUpLate();
-  if (axis_.state.halted && !control_.halt()) mode_->lateInHalt(now);
+  if (axis_.ends_at_stop_point) mode_->lateInHalt(now);
 }
 
 void Generator::giveUpLate() {
@@ -139,8 +139,8 @@ void Generator::encode() {
   std::uint64_t raw = given_raw_;
   const bool as_given = sent_.value() == given_;
   if (!as_given && !mode_->encode(sent_.value(), raw)) return;
-  if (raw != target_raw_)
-    mode_->offer(raw, axis_.state.halted);  // where the drive is stopped by it
+  // Twice where the drive is stopped by it.
+  if (raw != target_raw_) mode_->offer(raw, axis_.ends_at_stop_point);
   target_raw_ = raw;
 }
 
@@ -166,14 +166,14 @@ void Generator::sendNeutral() {
 bool Generator::movesItself() const {
   if (!control_.inOperation() || control_.halt()) return false;
   if (control_.homingStart()) return true;
-  return !axis_.state.halted && mode_->spec().target_reached_bit && goalAhead();
+  return !axis_.ends_at_stop_point && mode_->spec().target_reached_bit && goalAhead();
 }
 
 void Generator::watchDrive(Time now) {
   if (!control_.homingStart() && !mode_->handsOver()) return;
   if (!feedback_.measuredStill()) seen_moving_ = now;
-  const bool halting = axis_.state.halted && !control_.halt();
-  if (movesItself() || (halting && mode_->mayTurnBack(now, seen_moving_))) moved_itself_ = now;
+  const bool turns_back = axis_.ends_at_stop_point && mode_->mayTurnBack(now, seen_moving_);
+  if (movesItself() || turns_back) moved_itself_ = now;
   axis_.moved_at = std::max(sent_.movedAt(), moved_itself_);
 }
 

@@ -105,7 +105,10 @@ class Generator {
   /// has yet to set off, gets where it stands for that. @return whether that was so
   bool giveUpGoal();
   // The axis is halted while its set-points end, see ModeControl.
-  void setHalted(bool halted) { halted ? mode_->beginHalt() : mode_->endHalt(); }
+  void setHalted(bool halted) {
+    axis_.ends_at_stop_point = halted;
+    halted ? mode_->beginHalt() : mode_->endHalt();
+  }
   /// The drive has come to its last goal, and stands there.
   void goalReached() { sent_.forgetGoals(); }
 

@@ -6,6 +6,7 @@
 
 #include "drive/axis/core.h"
 #include "drive/axis/words.h"
+#include "drive/procedures/limits.h"
 #include "drive/profile/object_value.h"
 #include "drive/sentence.h"
 
@@ -20,6 +21,7 @@ void Stops::halt(Time now) {
   Generator& generator = axis_.generator();
   if (!axis_.control().inOperation() || state.halted) return;
   generator.stop();
+  unfinished_ = Unfinished::nothing;  // it goes on with what ends a goal
   switch (how()) {
     case StopBy::halt:
       axis_.control().setHalt(true);
@@ -31,7 +33,8 @@ void Stops::halt(Time now) {
       if (!brakeByMode(now)) axis_.setGoal(Goal::quick_stop);
       return;
     case StopBy::set_points:
-      generator.setHalted(true);
+      // A goal that is being ended has its stop point already.
+      if (!axis_.basis().ends_at_stop_point) generator.setHalted(true);
       break;
   }
   state.halted = true;
@@ -40,13 +43,52 @@ void Stops::halt(Time now) {
 
 void Stops::hold(Time now) {
   halt(now);
-  holding_ = axis_.state().halted;
+  if (axis_.state().halted) unfinished_ = Unfinished::hold;
 }
+
+void Stops::endMotion(Duration over) {
+  Generator& generator = axis_.generator();
+  generator.stop(over);
+  if (!generator.mode().goals() || !axis_.control().inOperation() || axis_.state().halted) return;
+  const bool ahead = generator.goalAhead() || generator.handingOver();
+  if (endsGoal() || (!ahead && axis_.feedback().atStandstill())) return;
+  how() == StopBy::halt ? axis_.control().brake() : generator.setHalted(true);
+  unfinished_ = Unfinished::goal;
+  ends_until_ = kNever;
+  replaced_.reset();
+}
+
+void Stops::finish(Time now) { endsGoal() ? finishGoal(now) : finishHold(); }
 
 void Stops::finishHold() {
   if (axis_.state().halted && !axis_.feedback().atStandstill()) return;
-  holding_ = false;
+  unfinished_ = Unfinished::nothing;
   if (axis_.state().halted) axis_.generator().takeBack();
+}
+
+void Stops::finishGoal(Time now) {
+  Generator& generator = axis_.generator();
+  const bool by_halt = axis_.control().braking();
+  if (!by_halt && !axis_.basis().ends_at_stop_point) {  // another mode came, or the power went
+    unfinished_ = Unfinished::nothing;
+  } else if (!replaced_) {
+    if (ends_until_ == kNever) ends_until_ = now + stopTime(axis_.config(), axis_.state().velocity);
+    if (!axis_.feedback().seenToStand(now)) return now < ends_until_ ? void() : giveUpEnding();
+    replaced_ = generator.targetFrames();
+    by_halt ? generator.takeBack() : (void)generator.withdraw();
+  } else if (!generator.handingOver() && generator.targetFrames() >= *replaced_ + kSureFrames) {
+    unfinished_ = Unfinished::nothing;
+    axis_.control().endBraking();
+    generator.setHalted(false);
+  }
+}
+
+void Stops::giveUpEnding() {
+  axis_.notices().fail(axis_.who() +
+                       ": the axis did not come to rest in front of the goal that was given up; "
+                       "quick stop is commanded. " +
+                       report(axis_));
+  axis_.setGoal(Goal::quick_stop);
 }
 
 void Stops::replaceHaltedTarget() {

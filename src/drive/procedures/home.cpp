@@ -41,6 +41,13 @@ Result<std::unique_ptr<Procedure>> makeDriveHoming(AxisCore& axis) {
                  ": cannot home: no homing method is configured; set homing: "
                  "{method: ...}"};
   }
+  const bool homes = axis.mode().spec().kind == ControlKind::homing;
+  const bool in_the_way = axis.state().halted && axis.control().halt() && !homes;
+  if (in_the_way && !axis.profile().mode_change.while_halted) {
+    return Error{axis.who() +
+                 ": cannot home: it is halted, and the drive takes no mode then; enable releases "
+                 "the halt"};
+  }
   if (axis.generator().moving()) {
     return Error{axis.who() + ": homing is only started at standstill (velocity " +
                  number(axis.state().velocity) + ")"};

@@ -52,7 +52,8 @@ Outcome DriveHoming::advance(const Context& context) {
       if (outcome.isDone() && disabled) outcome = offset_.advance(context);
       if (outcome.isDone() && method_.moves) outcome = speeds_.advance(context);
       if (!outcome.isDone()) return outcome;
-      if (!context.axis.generator().sent().atRest() || !context.axis.limits().settled()) {
+      if (!context.axis.generator().sent().atRest() || context.axis.stops().endsGoal() ||
+          !context.axis.limits().settled()) {
         return Outcome::running();
       }
       entered_by_mode_ = context.axis.inOperation();
@@ -90,7 +91,10 @@ void DriveHoming::begin(const Context& context) {
 
 Outcome DriveHoming::enterHoming(const Context& context) {
   const Outcome outcome = entered_by_mode_ ? mode_.advance(context) : enabling_.advance(context);
-  if (outcome.isDone()) enter(Phase::offsetting, context);
+  if (outcome.isDone()) {
+    context.axis.control().setHalt(false);  // of a halt from before: it would keep the drive still
+    enter(Phase::offsetting, context);
+  }
   return outcome.isDone() ? Outcome::running() : outcome;
 }
 

@@ -13,6 +13,11 @@ Outcome ReadyToSwitchStep::advance(const Context& context) {
   ready_ = ready_ || axis.powerOff();
   if (ready_) return Outcome::done();
   if (!standing_) {
+    if (axis.stops().endsGoal()) {
+      context.show("awaiting the end of a goal", "the drive to take the place where it stands");
+      started_ = context.now;
+      return Outcome::running();
+    }
     if (context.now < started_) return Outcome::running();
     const Outcome standing = awaitStandstill(context, started_, "switching the mode");
     if (!standing.isDone()) return standing;
