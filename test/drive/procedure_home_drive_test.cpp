@@ -184,6 +184,36 @@ TEST(DriveHoming, IsStoppedByTheHaltBitWhereTheDriveHasOne) {
   }
 }
 
+// A drive that has found home when it is halted goes back to it, once nothing but its mode holds
+// it.
+TEST(DriveHoming, IsReleasedFromItsHaltWithTheModeOrAwaitedAtRestBefore) {
+  for (const bool while_halted : {true, false}) {
+    SCOPED_TRACE(while_halted);
+    DriveProfile profile = testProfile();
+    profile.mode_change.while_halted = while_halted;
+    Bench bench(searches(profile));
+    bench.drive.never_homes = true;
+    ASSERT_TRUE(bench.boot());
+    ASSERT_TRUE(bench.axis.start({ProcedureKind::home, {}, 0.0}, bench.now).ok());
+    ASSERT_TRUE(bench.runUntil([&] { return bench.drive.velocity < 0; }));
+    bench.axis.cancel("the action was cancelled", bench.now);
+    ASSERT_TRUE(bench.runUntil([&] { return (bench.drive.controlword & 0x0100) != 0; }));
+    int goes_back = 0;
+    bench.each_cycle = [&] {
+      const bool released = bench.drive.mode == 6 && (bench.drive.controlword & 0x0110) == 0;
+      bench.drive.coast = released && goes_back++ < 25 ? 500 : 0;
+    };
+    ASSERT_TRUE(bench.runUntil([&] { return !bench.axis.procedure().running; }));
+    EXPECT_EQ(bench.drive.velocity, 0.0);
+    EXPECT_EQ(goes_back == 0, while_halted);
+    EXPECT_EQ(goes_back > 25, !while_halted);
+    EXPECT_THAT(bench.axis.procedure().message, HasSubstr("; the axis stands at "));
+    bench.run(12ms);
+    EXPECT_EQ(bench.drive.controlword, 0x000F);
+    EXPECT_EQ(bench.drive.mode, 8);
+  }
+}
+
 TEST(DriveHoming, AnAxisThatIsStoppedGetsItsTimeToComeToRest) {
   for (const auto coasting : {1500ms, 3000ms}) {
     SCOPED_TRACE(coasting.count());

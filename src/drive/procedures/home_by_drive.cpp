@@ -307,11 +307,20 @@ void DriveHoming::giveUp(const Context& context, std::string why) {
   context.show("stopping", "standstill after controlword bit 4 was dropped");
 }
 
+/// Without the halt a drive that had just found home would go back to it: the halt ends with the
+/// mode, but before where it is in the way of another one.
 Outcome DriveHoming::stop(const Context& context) {
   AxisCore& axis = context.axis;
   const bool sent = axis.control().frames() >= frames_ + kSureFrames;
-  if (sent && axis.feedback().atStandstill()) {
+  if (sent && released_ == kNever && axis.feedback().atStandstill()) {
+    if (axis.profile().mode_change.while_halted) {
+      restore(context);
+      return Outcome::running();
+    }
     axis.control().setHalt(false);
+    released_ = context.now;
+  }
+  if (released_ != kNever && axis.feedback().seenStill(released_)) {
     restore(context);
     return Outcome::running();
   }
@@ -329,8 +338,16 @@ void DriveHoming::restore(const Context& context) {
 
 Outcome DriveHoming::finishRestoring(const Context& context) {
   AxisCore& axis = context.axis;
-  const Outcome outcome = restoring_->advance(context);
-  if (outcome.isRunning()) return outcome;
+  if (!restored_) {
+    const Outcome outcome = restoring_->advance(context);
+    if (outcome.isRunning()) return outcome;
+    restored_ = outcome;
+    if (axis.control().halt()) frames_ = axis.control().frames();
+    axis.control().setHalt(false);
+  }
+  const bool released = axis.control().frames() >= frames_ + kSureFrames;
+  if (axis.inOperation() && !released) return Outcome::running();
+  const Outcome& outcome = *restored_;
   const std::string where = length(axis.state().position, axis.config().geometry.prismatic());
   if (!failure_.empty()) {
     return Outcome::failed(axis.who() + ": homing stopped: " + failure_ + "; the axis stands at " +

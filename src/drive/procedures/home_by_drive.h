@@ -75,7 +75,8 @@ class DriveHoming : public Procedure {
   SwitchStep mode_;
   EnableStep enabling_;
   std::optional<SwitchStep> restoring_;
-  fieldbus::Ticket read_;  ///< of 607Ch
+  std::optional<Outcome> restored_;  ///< what came of that
+  fieldbus::Ticket read_;            ///< of 607Ch
 
   Phase phase_ = Phase::begin;
   HomingMethod method_;  ///< that is configured
@@ -85,6 +86,7 @@ class DriveHoming : public Procedure {
   std::string failure_;       ///< set: this homing will fail
   std::uint64_t frames_ = 0;
   Time since_{}, started_{}, interrupted_since_{}, end_{};
+  Time released_ = kNever;  ///< of a search that was stopped: its halt
 };
 
 }  // namespace cia402::drive
