@@ -1,12 +1,7 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 // A motor that a driver before has left turning is stopped before the drive is reset; in a mode
 // whose stop only lets it go another one takes it over first.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-
-#include "canopen/node_fixture.h"
+#include "canopen/boot_brake_fixture.h"
 
 namespace cia402::canopen {
 namespace {
@@ -16,60 +11,6 @@ using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 using ::testing::Not;
-
-constexpr Duration kUnanswered = std::chrono::milliseconds(300);
-// After 0.3 s without an answer it is reset, and told 0.05 s later that it goes on as before.
-constexpr Duration kAwaitsBootUp = std::chrono::milliseconds(360);
-const char kReset[] = "000 82 03";
-const char kTellPreOperational[] = "000 80 03";
-const char kAskShownMode[] = "603 40 61 60 00 00 00 00 00";
-const char kAskStatusword[] = "603 40 41 60 00 00 00 00 00";
-const char kAskVelocity[] = "603 40 6C 60 00 00 00 00 00";
-const char kTarget[] = "603 23 FF 60 00 10 27 00 00";  // 10000, as it turns
-const char kOperationEnabled[] = "583 4B 41 60 00 37 12 00 00";
-const char kQuickStopActive[] = "583 4B 41 60 00 17 12 00 00";
-const char kSwitchOnDisabled[] = "583 4B 41 60 00 50 02 00 00";
-const char kFaultReactionActive[] = "583 4B 41 60 00 1F 12 00 00";
-const char kMode[] = "603 2F 60 60 00 09 00 00 00";
-const char kQuickStop[] = "603 2B 40 60 00 02 00 00 00";
-
-/// Modes 4 and 10 push; mode 9 brakes.
-class BootBrakeTest : public test::NodeFixture {
- protected:
-  BootBrakeTest() {
-    config.brakes = {brakeByMode9({4, 10})};
-    for (const char* line : {kAskShownMode, kAskStatusword, kAskVelocity}) peer.forget(line);
-    peer.on(kAskShownMode, Lines{"583 4F 61 60 00 0A 00 00 00"});
-    peer.on(kAskStatusword, Lines{kOperationEnabled});
-    StartupWrite stop;
-    stop.object = {0x6040, 0};
-    stop.data = {0x02, 0x00};
-    stop.only_if_different = false;
-    stop.always = true;
-    config.writes = {stop};
-    peer.on(kQuickStop, "583 60 40 60 00 00 00 00 00");
-    peer.on(kAskVelocity, "583 43 6C 60 00 10 27 00 00");
-    peer.on(kTarget, "583 60 FF 60 00 00 00 00 00");
-    peer.on(kMode, "583 60 60 60 00 00 00 00 00");
-  }
-  void shows(const char* mode_answer) {
-    peer.forget(kAskShownMode);
-    peer.on(kAskShownMode, mode_answer);
-  }
-  void rests() { peer.on(kAskStatusword, Lines{kSwitchOnDisabled}); }
-  /// What is sent until the reset.
-  Lines sentBeforeReset(Duration within = Duration::zero()) {
-    boot();
-    pass(2 * master.sync_period + within);
-    Lines lines;
-    for (const std::string& line : peer.take()) {
-      if (line == kReset) return lines;
-      lines.push_back(line);
-    }
-    ADD_FAILURE() << "it was not reset";
-    return lines;
-  }
-};
 
 TEST_F(BootBrakeTest, takes_the_motor_over_at_its_velocity_before_the_reset) {
   peer.on(kAskShownMode, Lines{"583 4F 61 60 00 09 00 00 00"});

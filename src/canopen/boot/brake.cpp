@@ -17,6 +17,7 @@ constexpr Duration kQuick = std::chrono::milliseconds(100);   // for one that an
 constexpr int kQuickRetries = 5;                              // in as long as the others' two
 constexpr Duration kPatience = std::chrono::milliseconds(100);  // for the mode to be shown
 constexpr Duration kRamp = std::chrono::seconds(2);             // for the motors to rest
+constexpr Duration kSign = std::chrono::milliseconds(50);       // of one that was silent
 constexpr Duration kInterval = std::chrono::milliseconds(10);   // of questions meanwhile
 // CiA 402-2, state coding
 constexpr std::uint32_t kStateMask = 0x6F, kOperationEnabled = 0x27, kQuickStopActive = 0x07;
@@ -42,12 +43,15 @@ class Brake : public BootStep {
     if (boot.stopped_before && !identified_) item_ = boot.config.brakes.size();
     if (item_ < boot.config.brakes.size()) return readStatus(boot, item_, Phase::state, now);
     if (!turning_.empty() && (stop(boot, now) || rest(boot, now))) return true;
-    if (!identified_) end(boot, now);
+    if (identified_) return false;
+    if (stopUnasked(boot, now)) return true;
+    end(boot, now);
     return false;
   }
 
   Progress check(BootContext& boot, Time now) override {
     if (phase_ == Phase::wait) return readVelocity(boot, now);
+    if (phase_ == Phase::unasked) return awaitSign(boot, now);
     if (!boot.answered()) return Progress::waiting;
     if (phase_ == Phase::stop) return Progress::again;
     const bool usable =
@@ -60,14 +64,50 @@ class Brake : public BootStep {
   }
 
  private:
-  enum class Phase { state, vendor, mode, wait, velocity, target, command, shown, stop, rest };
+  enum class Phase {
+    state,
+    vendor,
+    mode,
+    wait,
+    velocity,
+    target,
+    command,
+    shown,
+    stop,
+    rest,
+    unasked
+  };
 
-  /// Its heartbeat says that it is there: the question, or its answer, was lost.
+  static bool isThere(const BootFindings& found) {
+    return found.tpdo_heard ||
+           (found.heartbeat_heard && found.heartbeat_state != NmtState::stopped);
+  }
+
+  /// Its heartbeat or a TPDO says that it is there: the question, or its answer, was lost.
   bool asksAgain(const BootContext& boot) {
     const bool lost = boot.ticket->failure() == fieldbus::Transfer::Failure::timed_out;
-    const bool there =
-        boot.found.heartbeat_heard && boot.found.heartbeat_state != NmtState::stopped;
-    return phase_ == Phase::state && lost && there && asked_again_++ < kQuickRetries;
+    return phase_ == Phase::state && lost && isThere(boot.found) && asked_again_++ < kQuickRetries;
+  }
+
+  /// One that answered nothing may be there since a moment ago: it is told once to stop, and has
+  /// time to do that before a reset would make it forget the request.
+  bool stopUnasked(BootContext& boot, Time now) {
+    const bool known = !boot.config.vendor_id || boot.vendor_known;
+    const bool in_vain = !boot.found.braked && !boot.stopped_before && !isThere(boot.found);
+    if (!in_vain || !known || boot.config.brakes.empty()) return false;
+    if (!std::exchange(boot.stops_unasked, false)) return false;
+    for (const StartupWrite& write : boot.config.writes) {
+      if (write.always) boot.sdo.post(write.object, write.data);
+    }
+    phase_ = Phase::unasked;
+    boot.deadline = now + kSign;
+    return true;
+  }
+  Progress awaitSign(BootContext& boot, Time now) {
+    const bool there = isThere(boot.found);
+    if (!there && now < boot.deadline) return Progress::waiting;
+    if (there) item_ = 0;
+    return Progress::again;
   }
 
   /// Of all axes. @return false: nothing is left of it
@@ -194,6 +234,7 @@ class Brake : public BootStep {
       case Phase::wait:
       case Phase::stop:
       case Phase::rest:
+      case Phase::unasked:
         return false;
     }
     read(boot, brake(boot).shown_mode, "mode display", now);

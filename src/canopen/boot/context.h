@@ -54,6 +54,7 @@ struct BootFindings {
   bool heartbeat_heard = false;  ///< or an answer to guarding
   NmtState heartbeat_state = NmtState::unknown;  ///< that it told last, ...
   Time heartbeat_at{};                           ///< ... and when
+  bool tpdo_heard = false;                       ///< before it was told to start
   bool braked = false;                   ///< a motor that turned on, or none of its motors did
   bool operational_heard = false;        ///< since it was told to start
   bool only_by_tpdo = false;             ///< a heartbeat may still say what was before
@@ -118,6 +119,7 @@ class BootContext {
   bool restored = false;         ///< ... and it has
   bool must_configure = false;   ///< whatever 1020h says
   bool vendor_known = false;     ///< it is the configured one, since the boot-up message
+  bool stops_unasked = false;    ///< see BootProcedure::stopUnasked()
   std::string step{"not started"}, error;
   BootFailure failure = BootFailure::none;
   std::vector<std::string> notes;    ///< warnings

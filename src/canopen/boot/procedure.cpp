@@ -201,6 +201,14 @@ bool BootProcedure::tpdoHeard() {
   return true;
 }
 
+bool BootProcedure::tpdoAppears(Time now) {
+  boot_.found.tpdo_heard = true;
+  if (boot_.braking) unheard_ = false;
+  const bool on_its_way = now < boot_.commanded + kOnItsWay;
+  if (boot_.braking) return true;
+  return !on_its_way && mayStillTurn(NmtState::operational, now);
+}
+
 bool BootProcedure::overtakenByTpdo(NmtState state) {
   return std::exchange(boot_.found.only_by_tpdo, false) && state == NmtState::pre_operational;
 }

@@ -33,6 +33,9 @@ class BootProcedure {
   void start(From from, Time now, NmtState told = NmtState::unknown,
              NmtCommand reset = NmtCommand::reset_communication);
   void stop();
+  /// Whether motors that are asked for in vain are told to stop once, before its NMT command: who
+  /// it is was seen before, and that stop brakes them. Counts from the next start() on.
+  void stopUnasked(bool may) { boot_.stops_unasked = may; }
 
   /// Goes as far as the answers allow. To be called after every SDO answer and heartbeat and when
   /// deadline() has come. A boot-up message, expected or not, is a reason to start() again.
@@ -47,6 +50,9 @@ class BootProcedure {
   bool asksForMotors(NmtState heard) const;
   /// A TPDO came: the node is operational. @return false if nobody waits for that.
   bool tpdoHeard();
+  /// A TPDO came though the node was not told to start: it is operational, and may turn its motors.
+  /// @return true: the boot goes on by that
+  bool tpdoAppears(Time now);
   /// @return true for the heartbeat that a TPDO, of higher priority, may have overtaken: the first
   /// one after a TPDO alone showed that the node is operational, if it says pre-operational.
   bool overtakenByTpdo(NmtState state);

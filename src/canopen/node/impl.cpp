@@ -83,6 +83,7 @@ void Node::Impl::beginBoot(BootProcedure::From from, const std::string& why, Tim
   if (from == BootProcedure::From::boot_up) sdo.serverRestarted();
   notes.clear();
   half_floats_adopted = false;
+  boot.stopUnasked(last_identity.has_value() && last_stop.ramps());
   boot.start(from, now, nmt_state, reset);
 }
 
@@ -297,6 +298,13 @@ void Node::Impl::stopUnasked(NmtState state, Time now) {
   } else if (asked_in_vain) {
     last_stop.stopBesides(now);
   }
+}
+
+/// Of a drive that goes on as before: it tells sooner than a heartbeat that somebody is there.
+void Node::Impl::onUnaskedTpdo(Time now) {
+  if (!boot.running() || !boot.tpdoAppears(now)) return;
+  runBoot(now);
+  refresh();
 }
 
 void Node::Impl::onEmergency(const can::Frame& frame, Time stamp) {
