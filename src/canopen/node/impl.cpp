@@ -300,13 +300,6 @@ void Node::Impl::stopUnasked(NmtState state, Time now) {
   }
 }
 
-/// Of a drive that goes on as before: it tells sooner than a heartbeat that somebody is there.
-void Node::Impl::onUnaskedTpdo(Time now) {
-  if (!boot.running() || !boot.tpdoAppears(now)) return;
-  runBoot(now);
-  refresh();
-}
-
 void Node::Impl::onEmergency(const can::Frame& frame, Time stamp) {
   const auto emergency = decodeEmergency(frame, stamp);
   if (!emergency) {

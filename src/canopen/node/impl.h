@@ -49,7 +49,6 @@ struct Node::Impl : Node::Front {
   void onErrorControl(std::uint8_t byte, Time stamp, Time now);
   void onHeartbeat(NmtState state, Time stamp, Time now);
   void stopUnasked(NmtState state, Time now);
-  void onUnaskedTpdo(Time now);
   void onEmergency(const can::Frame& frame, Time stamp);
 
   void adoptCobIds();

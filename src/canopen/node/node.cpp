@@ -142,7 +142,11 @@ void Node::receive(const can::Frame& frame, Time stamp, Time now) {
 }
 
 void Node::receiveTpdo(std::size_t tpdo, const can::Frame& frame, Time stamp) {
-  if (!impl_->pdos_live) return impl_->onUnaskedTpdo(stamp);
+  if (!impl_->pdos_live) {  // it goes on as before; a heartbeat would tell so, but later
+    if (!impl_->boot.running() || !impl_->boot.tpdoAppears(stamp)) return;
+    impl_->runBoot(stamp);
+    return impl_->refresh();
+  }
   impl_->image.receive(tpdo, frame, stamp);
   if (impl_->health != Health::booting || !impl_->boot.tpdoHeard()) return;
   impl_->next = Time();  // the boot goes on at the next tick
