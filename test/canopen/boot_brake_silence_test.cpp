@@ -53,6 +53,18 @@ TEST_F(BootBrakeTest, stops_the_motor_of_a_drive_that_appears_by_a_tpdo_after_it
   EXPECT_THAT(peer.take(), IsEmpty()) << "its motors were asked for already";
 }
 
+TEST_F(BootBrakeTest, does_not_ask_a_drive_again_that_says_after_a_tpdo_that_it_is_stopped) {
+  peer.forget(kAskStatusword);
+  peer.forget(kReset);
+  boot();
+  tpdo("183 37 12");
+  hear("703 04");
+  pass(kAwaitsBootUp);
+  const Lines sent = peer.take();
+  EXPECT_EQ(std::count(sent.begin(), sent.end(), kAskStatusword), 1);
+  EXPECT_THAT(sent, Contains(kReset));
+}
+
 // Silent until a moment ago: its reset alone would not stop its motor. The mode whose stop only
 // lets the motor go is not known to be left; what was never seen may be anything.
 TEST_F(BootBrakeTest, tells_a_known_drive_that_answers_nothing_to_stop_before_the_reset) {

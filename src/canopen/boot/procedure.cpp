@@ -160,6 +160,7 @@ void BootProcedure::heartbeatHeard(NmtState state, Time now) {
   boot_.found.heartbeat_heard = true;
   boot_.found.heartbeat_state = state;
   boot_.found.heartbeat_at = now;
+  if (state == NmtState::stopped) boot_.found.tpdo_heard = false;  // it had left before
   if (started()) {
     if (state == NmtState::operational) boot_.found.operational_heard = true;
     return;
