@@ -150,8 +150,10 @@ void Calls::judgeStopped(const Call& call, const bus::ProcedureReport& report) {
     const bool homed = axis.message.find(": homed by") != std::string::npos;
     const bool commanded = homed && permits.given(i) > call.at;
     const bool stands = std::fabs(session_.truths[i].velocity) <= session_.stage.axes()[i].creep();
-    if (led || commanded || !begun || stands || axis.message.find("it moves") != std::string::npos)
-      continue;
+    const bool told = axis.message.find("it moves") != std::string::npos;
+    // Nothing tells whether the motor stands of a drive that is cut off, or without power.
+    const bool heard = session_.now() >= session_.conditions.axes[i].unheard;
+    if (led || commanded || !begun || stands || told || !heard) continue;
     session_.report("untrue_answer", session_.stage.axes()[i].name,
                     call.verb + " was ended and is answered (" + axis.message +
                         ") while the motor turns at " + number(session_.truths[i].velocity) +
