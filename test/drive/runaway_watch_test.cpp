@@ -225,6 +225,24 @@ TEST(RunawayWatch, TakesALeapOfOneThatComesToRestForNoMotion) {
   }
 }
 
+// The host was late for 0.15 s: the motor went on with the velocity that it had been told last,
+// while a stop was to bring it to rest. It is braked then, or it is not.
+TEST(RunawayWatch, LeavesOneAloneThatIsBrakedAfterALateCycle) {
+  for (const bool braked : {true, false}) {
+    RunawayWatch watch{kStandstill, kCount, 7.0, 10ms};
+    const Time from = Time{} + 1s;
+    EXPECT_FALSE(watch.measure(0.3223, from));
+    EXPECT_TRUE(watch.measure(0.3218, from + 50ms));
+    EXPECT_TRUE(watch.measure(0.2803, from + 240ms));
+    RunawayWatch::Led stopping = to(0.3112);
+    stopping.velocity = -0.14;
+    ASSERT_FALSE(watch.follows(stopping.velocity));
+    EXPECT_FALSE(watch.runsAway(stopping)) << "it is seen once";
+    EXPECT_TRUE(watch.measure(braked ? 0.276 : 0.269, from + 290ms));
+    EXPECT_EQ(watch.runsAway(to(0.2767)), !braked);
+  }
+}
+
 TEST(RunawayWatch, KnowsNothingAcrossAGap) {
   RunawayWatch watch{kStandstill, kCount, kAcceleration, kCycle};
   EXPECT_FALSE(watch.measure(0.0, Time{} + 1s));

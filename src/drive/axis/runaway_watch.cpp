@@ -15,6 +15,8 @@ constexpr double kFar = 3.0, kFarHeld = 10.0;
 /// Faster than it was by more than that it is accelerated, for a window is a few positions long,
 /// each of them late or early by a cycle.
 constexpr double kFaster = 1.3;
+/// So much slower than in the window before, it is braked, however fast it is still.
+constexpr double kBraked = 0.6;
 /// So many times as fast as in the window before, it is no motion as long as it is seen once: a
 /// drive may set its zero late.
 constexpr double kLeap = 5.0;
@@ -89,7 +91,8 @@ bool RunawayWatch::runsAway(const Led& led) {
   const double gone = std::fabs(position_ - from_), speed = std::fabs(velocity_);
   const double far = distance_ + kReaction * speed_, turn = speed_ * speed_ / acceleration_;
   const double faster = kFaster * speed_ + clearly_, sets_off = kReaction * acceleration_;
-  if (gone > far + turn && speed <= faster) {  // it turns back, or coasts
+  const bool braked = speed < kBraked * std::fabs(velocity_before_);
+  if (braked || (gone > far + turn && speed <= faster)) {  // it turns back, or coasts
     from_ = position_;
     speed_ = speed;
     return false;
