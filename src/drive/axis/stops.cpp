@@ -85,8 +85,11 @@ void Stops::finishGoal(Time now) {
 
 void Stops::giveUpEnding() {
   axis_.notices().fail(axis_.who() +
-                       ": the axis did not come to rest in front of the goal that was given up; "
-                       "quick stop is commanded. " +
+                       ": the axis did not come to rest in front of the goal that was given up "
+                       "(velocity " +
+                       number(axis_.state().velocity) +
+                       "): quick stop is commanded. See what drives it, or whether the drive takes "
+                       "its halt, then enable. " +
                        report(axis_));
   axis_.setGoal(Goal::quick_stop);
 }
