@@ -71,6 +71,7 @@ class AxisCycle {
   /// Then, once the bus has ended what it does by itself: begins to bring the axes to rest.
   void endMotion(Time now);
   const Shutdown& shutdown() const { return shutdown_; }
+  void finishShutdown() { shutdown_.finish(); }
 
   /// The axes have got other limits. @pre they are disabled
   void adoptLimits();

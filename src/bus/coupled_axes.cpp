@@ -50,6 +50,7 @@ class CoupledJoint final : public Joint {
   Time stamp() const override { return axes_->stampOf(index_); }
   double resolution() const override { return axes_->resolutionOf(index_); }
   bool ready() const override { return axes_->ready(); }
+  bool handsOver() const override { return axes_->handOver(); }
   const drive::SetPoint& sent() const override { return axes_->sentOf(index_); }
   bool goesOn(std::uint32_t breaks) const override { return ready() && sent().breaks() == breaks; }
   bool late() const override { return axes_->late(); }
@@ -318,6 +319,11 @@ bool CoupledAxes::late() const {
 bool CoupledAxes::axesRest() const {
   return std::all_of(units_.begin(), units_.end(),
                      [](const AxisUnit* unit) { return unit->axis.setPoint().atRest(); });
+}
+
+bool CoupledAxes::handOver() const {
+  return std::any_of(units_.begin(), units_.end(),
+                     [](const AxisUnit* unit) { return unit->axis.handsOver(); });
 }
 
 bool CoupledAxes::axesMove() const {

@@ -55,6 +55,7 @@ class CoupledAxes {
   bool ready() const;
   bool axesRest() const;  ///< nothing that was sent to them moves them
   bool axesMove() const;  ///< one that is heard does
+  bool handOver() const;  ///< one does, see drive::Axis::handsOver()
   bool late() const;
   std::string refusal(const std::string& group) const;
   drive::ProcedureKind stoppedBy() const;

@@ -32,6 +32,7 @@ class AxisJoint final : public Joint {
   const drive::SetPoint& sent() const override { return axis().setPoint(); }
   bool goesOn(std::uint32_t breaks) const override { return ready() && sent().breaks() == breaks; }
   bool endsGoal() const override { return axis().endsGoal(); }
+  bool handsOver() const override { return axis().handsOver(); }
   bool late() const override { return axis().late(); }
   std::string refusal(const std::string& group) const override;
   drive::ProcedureKind stoppedBy() const override { return stopCalledOn(axis()); }

@@ -54,6 +54,8 @@ class Joint {
   virtual bool goesOn(std::uint32_t breaks) const = 0;
   /// stop() was called, and its drive goes to a goal still, or may.
   virtual bool endsGoal() const { return false; }
+  /// What was sent last is being handed over to a drive, which moves by it from then on.
+  virtual bool handsOver() const = 0;
   /// Cycles were missed before this one.
   virtual bool late() const = 0;
 

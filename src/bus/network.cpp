@@ -78,6 +78,7 @@ void Network::start(Time now) {
 
 void Network::listen(Time now) {
   cycle_.setTime(now);
+  if (cycle_.shutdown().begun() && !mayStart()) return endUnstarted();
   if (!start_up_->tick(!bus_lost_.empty(), now)) return;
   beginSending(now);
   for (Command& command : start_up_->takeDeferred()) execute(std::move(command), now);
@@ -86,7 +87,7 @@ void Network::listen(Time now) {
 void Network::beginSending(Time now) {
   phase_ = Phase::running;
   cycle_.sayStep("");
-  if (!lss_->begin()) boot(now);
+  if (cycle_.shutdown().begun() || !lss_->begin()) boot(now);
 }
 
 void Network::boot(Time now) {
@@ -189,15 +190,30 @@ void Network::execute(Command command, Time now) {
   command.begin(parts, now);
 }
 
+/// A driver that is gone may have left motors turning. So drives that were not looked at yet are
+/// looked at first: the boot begins with a stop of those that turn.
 void Network::beginShutdown(Time now) {
   if (cycle_.shutdown().begun()) return;
-  // Before the nodes were booted there is nothing to stop.
-  const bool booted = phase_ == Phase::running && !lss_->starting();
-  if (!booted) phase_ = Phase::ended;
-  cycle_.beginShutdown(booted, now);
-  start_up_->abandon("the driver is shutting down");
+  const bool stops = phase_ == Phase::running || mayStart();
+  cycle_.beginShutdown(stops, now);
+  start_up_->refuseDeferred("the driver is shutting down");
+  const bool unbooted = lss_->starting();
   lss_->abandon("ended by the shutdown of the driver", now);
+  if (!stops) endUnstarted();
+  if (unbooted) boot(now);
   cycle_.endMotion(now);
+}
+
+/// It listens for another master and has heard none, so far.
+bool Network::mayStart() const {
+  return phase_ == Phase::listening && bus_lost_.empty() && start_up_->problem().empty();
+}
+
+/// There is nobody that it may tell to stop.
+void Network::endUnstarted() {
+  start_up_->finish();
+  phase_ = Phase::ended;
+  cycle_.finishShutdown();
 }
 
 void Network::releaseDevices(Time now) {

@@ -67,7 +67,8 @@ class Network final : private canopen::MasterListener, private BusSide {
   void execute(Command command, Time now);
 
   /// Ends everything in good order: motion is ramped down, the axes are disabled, the drives go
-  /// pre-operational; done after 1.8 s at the latest, see shutDown().
+  /// pre-operational; done after 1.8 s at the latest, see shutDown(). What a driver that is gone
+  /// may have left turning is stopped, too; where another master is on the bus nothing is sent.
   void beginShutdown(Time now);
   bool shutDown() const { return cycle_.shutdown().done(); }
 
@@ -122,6 +123,8 @@ class Network final : private canopen::MasterListener, private BusSide {
   void boot(Time now);
   void act(Time now);
   void stepCycle(Time now);
+  bool mayStart() const;
+  void endUnstarted();
   /// Why a command that needs the bus is not carried out; empty if it is.
   std::string refusal() const;
 

@@ -29,13 +29,14 @@ bool atRest(const AxisCycle& cycle) {
 }
 
 /// One that was lost as it turned is told to stop again and again, and once more when it is heard:
-/// it is worth waiting for.
+/// it is worth waiting for. So is one that nobody has looked at yet: a driver that is gone may have
+/// left it turning.
 bool disabled(const AxisCycle& cycle) {
   const auto& units = cycle.units();
   return std::none_of(units.begin(), units.end(), [](const AxisUnit& unit) {
     const fieldbus::Health health = unit.axis.state().health;
     return (health == fieldbus::Health::ready && unit.axis.procedure().running) ||
-           (health == fieldbus::Health::lost && unit.axis.mayMove());
+           (health == fieldbus::Health::lost && unit.axis.mayMove()) || unit.axis.beingFound();
   });
 }
 

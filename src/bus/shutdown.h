@@ -16,7 +16,7 @@ class Shutdown {
   bool begun() const { return stage_ != Stage::no; }
   bool done() const { return stage_ == Stage::done; }
 
-  /// It is asked for: nothing new is to begin. @param started false: there is nothing to stop
+  /// It is asked for: nothing new is to begin. @param started false: nothing may be sent
   void begin(bool started, Time now) {
     stage_ = started ? Stage::stopping : Stage::done;
     began_ = now;

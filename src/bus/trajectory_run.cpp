@@ -256,12 +256,14 @@ std::optional<TrajectoryOutcome> TrajectoryRun::standstill(Time now) {
     }
     // One that was held apart from its set-points may move again as they are called back to it.
     const std::uint32_t given_up = member.joint->sent().givenUp();
-    if (std::exchange(member.given_up, given_up) != given_up) member.rest.reset();
-    member.rest.update(member.joint->position(), member.joint->stamp());
-    const bool others = occupied(member);
+    const bool called_back = std::exchange(member.given_up, given_up) != given_up;
     const Joint& joint = *member.joint;
+    const bool others = occupied(member);
+    const bool led = !member.dropped && joint.handsOver();
+    if (called_back || led) member.rest.reset();  // how it moves by that is not to be seen yet
+    member.rest.update(joint.position(), joint.stamp());
     const bool commanded = member.dropped ? !joint.beingStopped() : joint.sent().atRest();
-    rest_commanded = rest_commanded && (others || (commanded && !joint.endsGoal()));
+    rest_commanded = rest_commanded && (others || (commanded && !led && !joint.endsGoal()));
     if (others || (restless == nullptr && !rests(member))) restless = &member;
   }
   if (!rest_commanded) commanded_rest_.reset();
@@ -339,7 +341,7 @@ std::optional<TrajectoryOutcome> TrajectoryRun::arrival(Time time) {
     const bool judged = tolerance > 0.0;
     const double error = std::abs(trajectory_->goal()[member.place] - joint.position());
     const bool arrived = error <= (judged ? tolerance : kArrived);
-    if (arrived && rests(member)) continue;
+    if (arrived && rests(member) && (late || !joint.handsOver())) continue;
     if (!late) return std::nullopt;
     if (arrived) return restlessness(member);
     const std::string where = joint.who() + " is " + distance(joint, error) + " away";

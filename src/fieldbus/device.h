@@ -58,6 +58,9 @@ class Device {
   virtual const std::optional<Emergency>& lastEmergency() const = 0;
   /// Without signs of life of this driver it stops by itself, as found at the present or last boot.
   virtual bool noticesLostMaster() const = 0;
+  /// Its boot comes first to motors that somebody else may have left turning, and is not done with
+  /// them. Not while it is not known whether it is there at all, but for the first question.
+  virtual bool seesToMotors() const = 0;
   /// It is away, and the configuration says that it may be.
   virtual bool excused() const = 0;
 

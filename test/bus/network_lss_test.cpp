@@ -269,6 +269,24 @@ TEST(NetworkLss, AScanThatDidNotTakePlaceIsNoSuccess) {
   EXPECT_EQ(second->front().message, "ended by the shutdown of the driver");
 }
 
+// A drive that turns has its node-ID already, whoever is asked for before.
+TEST(NetworkLss, AShutdownMeanwhileStopsWhatTurns) {
+  LssWorld world(1);
+  world.takeAway(0);
+  world.drives[1].statusword = 0x0237;  // operation enabled
+  world.network.start(world.now);
+  world.run(10ms);
+  ASSERT_FALSE(world.sentWithId(0x7E5).empty());
+  ASSERT_TRUE(world.sentWithId(0x602).empty());
+  world.network.beginShutdown(world.now);
+  ASSERT_TRUE(world.runUntil([&] { return world.network.shutDown(); }, 2s));
+  EXPECT_EQ(world.drives[1].statusword & 0x6Fu, 0x40u) << "switch on disabled";
+  EXPECT_EQ(world.sent.back().frame, can::Frame(0x000, {0x80, 0x00}));
+  world.sent.clear();
+  world.run(1s);
+  EXPECT_TRUE(world.sent.empty());
+}
+
 TEST(NetworkLss, TheDriveOfAnotherAxisDoesNotLoseItsNodeId) {
   LssWorld world(0);
   world.boot();

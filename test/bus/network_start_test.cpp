@@ -160,16 +160,66 @@ TEST_F(NetworkStart, ACallThatWaitsIsRefusedWhenAnotherMasterIsHeard) {
   EXPECT_THAT(answers->front().message, HasSubstr("a heartbeat with the master's node-ID"));
 }
 
-TEST_F(NetworkStart, EndsWithoutAFrameWhenItIsShutDownMeanwhile) {
+// Who was here before may have left a motor turning.
+TEST_F(NetworkStart, ListensToTheEndAndLooksAtItsDrivesWhenItIsShutDownMeanwhile) {
   world.network.start(world.now);
+  const Time listened = world.now + 150ms;
   const auto answers = world.begin(ProcedureKind::recover);
   world.run(50ms);
   world.network.beginShutdown(world.now);
-  EXPECT_TRUE(world.network.shutDown());
   ASSERT_EQ(answers->size(), 1u);
   EXPECT_EQ(answers->front().message, "refused: the driver is shutting down");
+  ASSERT_TRUE(world.runUntil([&] { return world.network.shutDown(); }, 1s));
+  EXPECT_LT(world.now, listened + 100ms) << "they answer at once, and rest";
+  for (const std::uint32_t request : {0x601u, 0x602u}) {
+    const auto asked = world.sentWithId(request);
+    ASSERT_FALSE(asked.empty());
+    EXPECT_GE(asked[0].time, listened);
+    EXPECT_EQ(asked[0].frame, can::Frame(request, {0x40, 0x41, 0x60, 0x00, 0, 0, 0, 0}));
+  }
+  EXPECT_EQ(world.sentWithId(0x000).back().frame, can::Frame(0x000, {0x80, 0x00}));
+  world.sent.clear();
   world.run(1s);
   EXPECT_TRUE(world.sent.empty());
+}
+
+TEST_F(NetworkStart, StopsOneThatTurnsWhenItIsShutDownMeanwhile) {
+  world.drives[1].statusword = 0x0237;  // operation enabled
+  world.network.start(world.now);
+  world.network.beginShutdown(world.now);
+  ASSERT_TRUE(world.runUntil([&] { return world.network.shutDown(); }, 2s));
+  EXPECT_EQ(world.drives[1].statusword & 0x6Fu, 0x40u) << "switch on disabled";
+}
+
+TEST_F(NetworkStart, EndsInTimeWhenItIsShutDownThoughNobodyIsThere) {
+  for (auto& drive : world.drives) drive.silent = true;
+  world.network.start(world.now);
+  const Time begun = world.now;
+  world.network.beginShutdown(world.now);
+  ASSERT_TRUE(world.runUntil([&] { return world.network.shutDown(); }, 2s));
+  EXPECT_LT(world.now - begun, 600ms) << "each was asked once, and told once to stop";
+}
+
+TEST(NetworkStartAtAShutdown, SendsNothingWhereAnotherMasterIsHeardOrTheBusIsLost) {
+  for (const bool lost : {true, false}) {
+    for (const bool before : {true, false}) {
+      SCOPED_TRACE(std::string(lost ? "lost" : "heard") + (before ? " before" : " after"));
+      RobotWorld world(listening());
+      const auto trouble = [&] {
+        if (lost) return world.network.busLost("can0 is bus-off", world.now);
+        world.network.receive(can::Frame(0x77F, {0x05}), world.now, world.now);
+      };
+      world.network.start(world.now);
+      world.run(50ms);
+      if (before) trouble();
+      world.network.beginShutdown(world.now);
+      EXPECT_EQ(world.network.shutDown(), before);
+      if (!before) trouble();
+      world.run(1s);
+      EXPECT_TRUE(world.network.shutDown());
+      EXPECT_TRUE(world.sent.empty());
+    }
+  }
 }
 
 TEST_F(NetworkStart, WhatCouldNotBeHeardIsListenedToAnew) {
@@ -194,12 +244,11 @@ TEST_F(NetworkStart, WhatElseIsHeardOfAnotherMasterIsShownAndNotToldAgain) {
                                    HasSubstr("RPDO 1 of shoulder (COB-ID 0x201)")));
 }
 
-TEST_F(NetworkStart, HearsNoOtherMasterOnceItIsShutDown) {
+TEST_F(NetworkStart, TellsOfNoOtherMasterOnceItIsShutDown) {
   world.network.start(world.now);
   world.network.beginShutdown(world.now);
   hear(can::Frame(0x77F, {0x05}));
   EXPECT_EQ(world.eventsWith("another master"), 0u) << world.allEvents();
-  EXPECT_EQ(syncProblem(), "");
 }
 
 TEST_F(NetworkStart, ASyncDuringTheListeningIsNoneBesideItsOwn) {

@@ -28,6 +28,7 @@ class FakeDevice final : public fieldbus::Device {
     return state_->emergency;
   }
   bool noticesLostMaster() const override { return state_->notices_lost_master; }
+  bool seesToMotors() const override { return false; }
   bool excused() const override { return false; }
   fieldbus::ObjectAccess& objects() override { return state_->objects; }
   void boot(Time now, bool reset) override { state_->boot(now, reset, {}); }

@@ -108,6 +108,28 @@ TEST_F(LeftTurning, IsStoppedBeforeAnythingElseIsWrittenAndBooted) {
   EXPECT_TRUE(scene.procedure(ProcedureKind::enable).success);
 }
 
+/// While a driver starts it is asked to end: it listens for another master, asks the drive for the
+/// first time, stops it, or boots it.
+class LeftTurningAtAShutdown : public LeftTurning, public testing::WithParamInterface<int> {};
+
+TEST_P(LeftTurningAtAShutdown, IsStoppedBeforeTheDriverEnds) {
+  leaveTurning();
+  ASSERT_NEAR(scene.truth("left").velocity_turns, 20.0, 0.1);
+  scene.robot().startDriver();
+  scene.run(std::chrono::microseconds(GetParam()));
+  scene.robot().network().beginShutdown(scene.now());
+  const auto ended = [&] { return scene.robot().network().shutDown(); };
+  ASSERT_TRUE(scene.runUntil(ended, 1810ms)) << scene.told();
+  scene.run(1s);
+  EXPECT_NEAR(scene.truth("left").velocity_turns, 0.0, 1e-3);
+  EXPECT_FALSE(scene.truth("left").power_stage_on);
+}
+
+INSTANTIATE_TEST_SUITE_P(Microseconds, LeftTurningAtAShutdown,
+                         testing::Values(0, 1000, 75000, 149900, 150100, 150500, 151000, 152000,
+                                         155000, 160000, 200000, 400000, 700000),
+                         testing::PrintToStringParamName());
+
 // NMT stop would leave it turning, out of reach of every SDO.
 TEST_F(LeftTurning, IsNotStoppedByNmtWhileItBoots) {
   leaveTurning();

@@ -107,6 +107,31 @@ TEST(PositionBySetPoints, StopsWithAStreamThatBrakesAllAtOnce) {
   }
 }
 
+/// The drive is behind the stream: it speeds up still when that has been stopped, and has where it
+/// ends to go to. That it goes slowly until then is no rest.
+TEST(PositionBySetPoints, StandsForGoodWhenItsGroupIsSaidToStand) {
+  for (int after = 10; after <= 200; after += 10) {
+    SCOPED_TRACE(after);
+    FamilyScene scene(
+        replaced(replaced(familyJoint(kBySets), "sync_period: 0.004", "sync_period: 0.01"),
+                 "acceleration: 4.0", "acceleration: 0.75"));
+    ASSERT_TRUE(scene.move({0.03}, 700ms).success);
+    scene.run(std::chrono::milliseconds(after));
+    bool ended = false;
+    bus::TrajectoryCommand stop;
+    stop.group = scene.loaded().robot.groups[0].name;
+    stop.ended = [&](const bus::TrajectoryOutcome& outcome) {
+      ended = true;
+      EXPECT_THAT(outcome.message, HasSubstr("stands"));
+    };
+    ASSERT_TRUE(scene.call(stop).success);
+    ASSERT_TRUE(scene.runUntil([&] { return ended; }, 2s)) << scene.told();
+    scene.forget();
+    scene.run(1s);
+    EXPECT_LT(scene.seen("joint").fastest, 0.01) << "stopped_velocity_tolerance";
+  }
+}
+
 // Each word in a SYNC period of its own, as for any set-point of the drive.
 TEST(PositionBySetPoints, AreHandedOverByTheWordsOfTheManual) {
   TracedScene scene(familyJoint(kBySets));

@@ -39,7 +39,10 @@ class LssSupervisor {
   /// Recovering begins with the node-ID where the drive may have lost it. @return true if so
   bool prepareRecovery(const std::vector<AxisUnit*>& units);
   /// Ends everything, for the reason `why`.
-  void abandon(const std::string& why, Time now) { desk_.abandon(why, now); }
+  void abandon(const std::string& why, Time now) {
+    desk_.abandon(why, now);
+    starting_ = false;
+  }
 
   /// "LSS: inquiring its node-ID": what is done now; empty if nothing is.
   std::string step() const { return desk_.step(); }

@@ -20,7 +20,7 @@ void StartUp::receive(const can::Frame& frame, Time now) {
   const bool was_alone = !listener_.heard();
   if (!listener_.receive(frame, now)) return;
   problem_.assign(listener_.text());
-  if (!was_alone) return;
+  if (!was_alone || cycle_.shutdown().begun()) return;
   cycle_.sayStep("waiting until there is no other master on the bus");
   tell(events_, Event::Severity::error,
        listener_.text() +
@@ -42,8 +42,7 @@ bool StartUp::tick(bool bus_lost, Time now) {
   return true;
 }
 
-void StartUp::abandon(const std::string& why) {
-  listener_.finish();
+void StartUp::refuseDeferred(const std::string& why) {
   for (Command& command : takeDeferred()) command.refuse("refused: " + why);
 }
 

@@ -30,14 +30,16 @@ class StartUp {
   void receive(const can::Frame& frame, Time now);
   /// @param bus_lost nothing can be heard. @return true once the bus was free for long enough
   bool tick(bool bus_lost, Time now);
-  /// The program ends, or whatever else `why` says.
-  void abandon(const std::string& why);
+  /// It is not listened to any more.
+  void finish() { listener_.finish(); }
 
   /// A command that comes meanwhile: calls wait for the end of the short listening, as they would
   /// for the drives to boot; set-points do not.
   void take(Command command);
   /// Those that have waited, in the order in which they came.
   std::vector<Command> takeDeferred();
+  /// They get that for an answer instead: the program ends, or whatever else `why` says.
+  void refuseDeferred(const std::string& why);
 
   /// Which other master is waited for, in words; empty if none is.
   const FixedText<256>& problem() const { return problem_; }

@@ -9,7 +9,8 @@
 namespace cia402::canopen {
 namespace {
 
-constexpr std::size_t kBrake = 0, kBootUpWait = 1, kWake = 2;   // places in makeSteps()
+// Places in makeSteps().
+constexpr std::size_t kBrake = 0, kBootUpWait = 1, kWake = 2, kBrakeOfKnown = 5;
 constexpr Duration kOnItsWay = std::chrono::milliseconds(20);   // a heartbeat of before a command
 constexpr Duration kResetTime = std::chrono::milliseconds(50);  // after which no old state is told
 
@@ -139,6 +140,14 @@ bool BootProcedure::asksForMotors(NmtState heard) const {
   const bool known = !boot_.config.vendor_id || boot_.vendor_known;
   return running() && boot_.braking && !boot_.found.braked && known && heard != NmtState::stopped &&
          !boot_.config.brakes.empty();
+}
+
+bool BootProcedure::seesToMotors() const {
+  if (!running() || boot_.config.brakes.empty()) return false;
+  if (index_ == kBrake || index_ == kBrakeOfKnown) return true;
+  const BootFindings& found = boot_.found;
+  const bool heard = found.heartbeat_heard || found.tpdo_heard || found.identity;
+  return heard && !found.braked && !found.after_reset && index_ < kBrakeOfKnown;
 }
 
 /// Silent while its motors were asked for, it is there now and may still turn them: they come first

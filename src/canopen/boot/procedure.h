@@ -48,6 +48,8 @@ class BootProcedure {
   /// Its motors are asked for before all else and have not answered; nothing is known to speak
   /// against stopping them unasked. @param heard what its heartbeat told just now
   bool asksForMotors(NmtState heard) const;
+  /// They are, or are going to be as it is heard; see fieldbus::Device.
+  bool seesToMotors() const;
   /// A TPDO came: the node is operational. @return false if nobody waits for that.
   bool tpdoHeard();
   /// A TPDO came though the node was not told to start: it is operational, and may turn its motors.

@@ -25,6 +25,7 @@ void Node::swapWrites(std::vector<StartupWrite>& writes, Time now) {
   impl_->config.writes.swap(writes);
   if (health() == Health::booting) boot(now, false);
 }
+bool Node::seesToMotors() const { return impl_->boot.seesToMotors(); }
 bool Node::excused() const { return config().boot.optional && isAway(impl_->health); }
 NmtState Node::nmtState() const { return impl_->nmt_state; }
 const std::string& Node::bootStep() const { return impl_->step(); }

@@ -79,6 +79,7 @@ class Node final : public fieldbus::Device {
   /// As the present or last boot has set it up.
   Supervision supervision() const;
   bool noticesLostMaster() const override { return supervision().watches_master; }
+  bool seesToMotors() const override;
   /// It was told to start: its PDOs are as configured.
   bool started() const;
 

@@ -269,6 +269,7 @@ bool Axis::setTarget(double value) { return impl_->core.generator().take(value);
 void Axis::stopSetPoint(Duration over) { impl_->core.stops().endMotion(over); }
 
 bool Axis::endsGoal() const { return impl_->core.stops().endsGoal(); }
+bool Axis::handsOver() const { return impl_->core.generator().handingOver(); }
 
 double Axis::positionResolution() const { return impl_->core.feedback().positionResolution(); }
 std::string Axis::motionRefusal() const { return drive::motionRefusal(impl_->core, impl_->busy()); }
@@ -276,6 +277,7 @@ double Axis::positionBy(const ObjectSpec& object, std::uint64_t raw) const {
   return impl_->core.feedback().positionBy(object, raw);
 }
 bool Axis::heardLately(Time now) const { return impl_->core.feedback().heardLately(now); }
+bool Axis::beingFound() const { return impl_->core.device().seesToMotors(); }
 bool Axis::mayMove() const { return impl_->core.feedback().mayMove(); }
 std::string Axis::obstacle() const { return drive::obstacle(impl_->core); }
 const std::string& Axis::modeName() const { return impl_->core.mode().spec().name; }

@@ -163,6 +163,8 @@ class Axis {
   bool heardLately(Time now) const;
   /// Is not known to stand. Without feedback one that stood without power still does.
   bool mayMove() const;
+  /// Somebody else may have left it turning, and its device's boot is to stop it first of all.
+  bool beingFound() const;
   /// Starts a procedure. disable, quick_stop and halt pre-empt a running one; anything else is
   /// refused with a sentence while one runs or where the axis cannot do it.
   Result<std::uint32_t> start(const ProcedureRequest& request, Time now);
@@ -219,6 +221,9 @@ class Axis {
   /// A goal that the drive goes to by itself is being ended by stopSetPoint(): its drive brakes, or
   /// does not have the place where it stands for a goal yet.
   bool endsGoal() const;
+  /// A set-point is being handed over to a drive that takes them one by one: it may yet set off, or
+  /// go on faster.
+  bool handsOver() const;
   /// Somebody gives the set-points of every cycle from now on by setTarget(), and streams are
   /// refused.
   /// @param who for messages, the name of a group; must outlive that. nullptr: nobody any more
