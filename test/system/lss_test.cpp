@@ -263,12 +263,23 @@ TEST_F(BehindAScan, NothingIsScannedOrAssignedInMotionThatBeganMeanwhile) {
   EXPECT_EQ(scene.drive("right").device().node(), 255);
 }
 
+// While another master is listened for, and while a node-ID is given.
 TEST(Lss, AShutdownAtTheStartIsOrderly) {
-  Scene scene(loadText(genericPair(lssOf(111) + unconfigured(111))));
-  scene.robot().start();
-  scene.run(60ms);
-  scene.robot().network().beginShutdown(scene.now());
-  EXPECT_TRUE(scene.robot().network().shutDown());
+  for (const Duration after : {60ms, 160ms}) {
+    Scene scene(loadText(genericPair(lssOf(111) + unconfigured(111))));
+    std::vector<can::Frame> nmt;
+    scene.world().bus().setMonitor([&](const can::Frame& frame, Time) {
+      if (frame.id == 0x000) nmt.push_back(frame);
+    });
+    scene.robot().start();
+    scene.run(after);
+    scene.robot().network().beginShutdown(scene.now());
+    const auto ended = [&] { return scene.robot().network().shutDown(); };
+    EXPECT_TRUE(scene.runUntil(ended, 1s)) << "before it has waited for drives that are not there";
+    scene.run(5ms);  // what was sent last is on its way
+    ASSERT_FALSE(nmt.empty());
+    EXPECT_EQ(nmt.back(), can::Frame(0x000, {0x80, 0x00})) << "pre-operational";
+  }
 }
 
 TEST(Lss, WhoWaitsForLssAtAShutdownIsAnswered) {
