@@ -92,7 +92,7 @@ void Network::beginSending(Time now) {
 
 void Network::boot(Time now) {
   sync_.begin(now);
-  master_.start(now);
+  master_.start(now, !cycle_.shutdown().begun());  // a reset would come before what stops motors
 }
 
 void Network::busLost(const std::string& why, Time now) {

@@ -55,6 +55,7 @@ void BootProcedure::start(From from, Time now, NmtState told, NmtCommand reset) 
   if (boot_.restore_pending && from == From::boot_up) boot_.restored = boot_.must_configure = true;
   boot_.restore_pending = false;
   unheard_ = from == From::unknown || from == From::before_reset;
+  from_reset_ = !unheard_;
   if (unheard_) {
     boot_.reset_when_braked = from == From::before_reset;
     boot_.braking = true;
@@ -142,12 +143,13 @@ bool BootProcedure::asksForMotors(NmtState heard) const {
          !boot_.config.brakes.empty();
 }
 
+/// A reset of the communication stops no motor by itself.
 bool BootProcedure::seesToMotors() const {
   if (!running() || boot_.config.brakes.empty()) return false;
   if (index_ == kBrake || index_ == kBrakeOfKnown) return true;
   const BootFindings& found = boot_.found;
-  const bool heard = found.heartbeat_heard || found.tpdo_heard || found.identity;
-  return heard && !found.braked && !found.after_reset && index_ < kBrakeOfKnown;
+  const bool there = from_reset_ || found.heartbeat_heard || found.tpdo_heard || found.identity;
+  return there && !found.braked && index_ < kBrakeOfKnown;
 }
 
 /// Silent while its motors were asked for, it is there now and may still turn them: they come first

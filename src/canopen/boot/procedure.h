@@ -83,7 +83,8 @@ class BootProcedure {
 
   BootContext boot_;
   Status status_ = Status::idle;
-  bool unheard_ = false;  ///< this boot began with its motors, and has heard no heartbeat yet
+  bool unheard_ = false;     ///< this boot began with its motors, and has heard no heartbeat yet
+  bool from_reset_ = false;  ///< it did not: a reset came, or comes, before
   std::vector<std::unique_ptr<BootStep>> steps_;
   std::size_t index_ = 0;  ///< of the present one in steps_
 };
