@@ -78,7 +78,10 @@ void Network::start(Time now) {
 
 void Network::listen(Time now) {
   cycle_.setTime(now);
-  if (cycle_.shutdown().begun() && !mayStart()) return endUnstarted();
+  if (cycle_.shutdown().begun() && !start_up_->mayEnd(!bus_lost_.empty())) {
+    phase_ = Phase::ended;
+    return cycle_.finishShutdown();
+  }
   if (!start_up_->tick(!bus_lost_.empty(), now)) return;
   beginSending(now);
   for (Command& command : start_up_->takeDeferred()) execute(std::move(command), now);
@@ -194,26 +197,14 @@ void Network::execute(Command command, Time now) {
 /// looked at first: the boot begins with a stop of those that turn.
 void Network::beginShutdown(Time now) {
   if (cycle_.shutdown().begun()) return;
-  const bool stops = phase_ == Phase::running || mayStart();
+  const bool stops = phase_ == Phase::running || start_up_->mayEnd(!bus_lost_.empty());
   cycle_.beginShutdown(stops, now);
   start_up_->refuseDeferred("the driver is shutting down");
   const bool unbooted = lss_->starting();
   lss_->abandon("ended by the shutdown of the driver", now);
-  if (!stops) endUnstarted();
+  if (!stops) phase_ = Phase::ended;
   if (unbooted) boot(now);
   cycle_.endMotion(now);
-}
-
-/// It listens for another master and has heard none, so far.
-bool Network::mayStart() const {
-  return phase_ == Phase::listening && bus_lost_.empty() && start_up_->problem().empty();
-}
-
-/// There is nobody that it may tell to stop.
-void Network::endUnstarted() {
-  start_up_->finish();
-  phase_ = Phase::ended;
-  cycle_.finishShutdown();
 }
 
 void Network::releaseDevices(Time now) {

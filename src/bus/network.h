@@ -123,8 +123,6 @@ class Network final : private canopen::MasterListener, private BusSide {
   void boot(Time now);
   void act(Time now);
   void stepCycle(Time now);
-  bool mayStart() const;
-  void endUnstarted();
   /// Why a command that needs the bus is not carried out; empty if it is.
   std::string refusal() const;
 

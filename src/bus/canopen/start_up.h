@@ -30,8 +30,8 @@ class StartUp {
   void receive(const can::Frame& frame, Time now);
   /// @param bus_lost nothing can be heard. @return true once the bus was free for long enough
   bool tick(bool bus_lost, Time now);
-  /// It is not listened to any more.
-  void finish() { listener_.finish(); }
+  /// It listens and has heard none so far: the bus may get free. @param bus_lost nothing is heard
+  bool mayEnd(bool bus_lost) const { return listening() && !bus_lost && !listener_.heard(); }
 
   /// A command that comes meanwhile: calls wait for the end of the short listening, as they would
   /// for the drives to boot; set-points do not.
