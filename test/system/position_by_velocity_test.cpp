@@ -2,6 +2,8 @@
 // A drive without a mode for a stream of positions, led to them by velocities or by set-points: how
 // closely the motor follows, beside drives that have such a mode, and what becomes of velocities
 // where the driver is late. What the joint does is read from the motor.
+#include <deque>
+
 #include "system/followed_path.h"
 #include "system/late_joint.h"
 
@@ -30,6 +32,37 @@ INSTANTIATE_TEST_SUITE_P(All, Followed,
                                          FamilyMode{kNimotionStepper, "4000", "csp"},
                                          FamilyMode{kMegmeetDm5, "8388608", "csp"}),
                          familyModeName);
+
+/// A limit switch that bounces stops the motor, and lets it go on behind its set-points, which move
+/// as fast as it may. It is behind them until they come to rest. While they brake by the limit it
+/// catches up, and is braked by twice that at most.
+TEST(PositionByVelocity, BrakesByItsLimitThoughItWasHeldBack) {
+  constexpr double kRamp = 2.0;  // rad/s^2
+  for (const Duration held : {180ms, 200ms, 220ms}) {
+    FamilyScene scene(replaced(familyJoint(kLed), "acceleration: 4.0", "acceleration: 2.0"));
+    ASSERT_EQ(scene.setpoint("joint", 1.5), "");
+    scene.run(450ms);
+    ASSERT_GT(scene.velocity("joint"), 0.7);
+    double& limit = scene.drive("joint").mechanics(0).positive_limit_switch;
+    const double before = std::exchange(limit, scene.truth("joint").position_turns);
+    scene.run(held);
+    limit = before;
+    scene.run(400ms);  // it catches up as its drive can
+    ASSERT_GT(scene.axis("joint").target() - scene.position("joint"), 0.03) << "far behind";
+    std::deque<double> speeds;
+    double hardest = 0.0;
+    for (int ms = 0; ms < 4000; ++ms) {
+      scene.run(1ms);
+      speeds.push_back(scene.velocity("joint"));
+      if (speeds.size() <= 20) continue;
+      hardest = std::max(hardest, std::fabs(speeds.back() - speeds.front()) / 0.02);
+      speeds.pop_front();
+    }
+    EXPECT_LT(hardest, 2.0 * kRamp) << toSeconds(held);
+    EXPECT_NEAR(scene.position("joint"), 1.5, oneCount(kLed)) << toSeconds(held);
+    EXPECT_LT(scene.seen("joint").highest, 1.5 + 1.5 * oneCount(kLed)) << toSeconds(held);
+  }
+}
 
 TEST(PositionByVelocity, HoldsTheJointWhereItsSetPointIs) {
   Scene scene(loadText(familyJoint(kLed)));

@@ -68,7 +68,22 @@ double PositionByVelocity::velocity() const {
   const double away = due - state().position;
   if (point.atRest() && std::fabs(away) <= kNearest * resolution_) return 0.0;
   const double fastest = limits().velocity.value_or(std::numeric_limits<double>::infinity());
-  return std::clamp(loop_.feed_forward * point.velocity() + loop_.gain * away, -fastest, fastest);
+  return std::clamp(leading(away), -fastest, fastest);
+}
+
+/// The loop brakes a motor by its gain times the speed at which that catches up. One that was held
+/// back and is far behind catches up no faster than it can be braked from by the limit, until where
+/// its set-points would come to rest from now on.
+double PositionByVelocity::leading(double away) const {
+  const double sign = std::copysign(1.0, away), speed = sign * sent().velocity();
+  const double ahead = loop_.feed_forward * speed, wanted = ahead + loop_.gain * std::fabs(away);
+  const double ramp = limits().acceleration.value_or(std::numeric_limits<double>::infinity());
+  const double slow = ramp / loop_.gain;  // braked from by the limit in the loop alone
+  if (loop_.gain * std::fabs(away) <= slow) return sign * wanted;
+  const double square =
+      2.0 * ramp * (std::fabs(away) + 2.0 * speed * toSeconds(axis().config.cycle)) +
+      speed * std::fabs(speed) - slow * slow;
+  return sign * std::min(wanted, std::max(ahead + slow, std::sqrt(std::max(0.0, square))));
 }
 
 const char* PositionByVelocity::handOver(std::uint64_t& raw, Time /*now*/) {

@@ -22,6 +22,7 @@ class PositionByVelocity : public CyclicPosition {
 
  private:
   double velocity() const;
+  double leading(double away) const;
   /// The loop that the configuration has by now.
   const PositionLoop& configured() const;
   void retune();
