@@ -251,7 +251,8 @@ std::optional<TrajectoryOutcome> TrajectoryRun::standstill(Time now) {
     // Something else stops one that was dropped: of that nothing but its motor tells.
     if (member.dropped && !member.joint->known()) {
       rest_commanded = rest_commanded && !member.joint->partIsLed();
-      if (restless == nullptr && member.joint->partMoves()) restless = &member;
+      const bool moves = !hasTrajectory() || member.joint->partMoves();  // for all that is known
+      if (restless == nullptr && moves) restless = &member;
       continue;
     }
     // One that was held apart from its set-points may move again as they are called back to it.
@@ -274,6 +275,7 @@ std::optional<TrajectoryOutcome> TrajectoryRun::standstill(Time now) {
     return std::nullopt;
   }
   if (occupied(*restless)) return notStopped(*restless);
+  if (!hasTrajectory() && !restless->joint->known()) return notKnown(*restless);
   TrajectoryOutcome outcome = outcome_;
   outcome.message += ", but " + stillMoves(*restless) + ", " + restAsked(*restless);
   return outcome;
@@ -287,6 +289,12 @@ TrajectoryOutcome TrajectoryRun::notStopped(const Member& member) const {
   return blame(
       TrajectoryErrorCode::goal_tolerance_violated, member, kNothing,
       ": " + member.joint->who() + " is not stopped by this: " + member.joint->occupation());
+}
+
+TrajectoryOutcome TrajectoryRun::notKnown(const Member& member) const {
+  return blame(TrajectoryErrorCode::goal_tolerance_violated, member, kNothing,
+               ": whether " + member.joint->name() +
+                   " stands is not known: " + member.joint->trouble(member.notices));
 }
 
 TrajectoryOutcome TrajectoryRun::blame(TrajectoryErrorCode code, const Member& member, double off,

@@ -117,6 +117,7 @@ class TrajectoryRun {
   /// It is to be stopped, and something else than this group moves it, or may.
   bool occupied(const Member& member) const;
   TrajectoryOutcome notStopped(const Member& member) const;
+  TrajectoryOutcome notKnown(const Member& member) const;
   TrajectoryOutcome restlessness(const Member& member) const;
   /// "elbow still moves at 0.3 rad/s".
   std::string stillMoves(const Member& member) const;

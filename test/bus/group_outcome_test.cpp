@@ -188,6 +188,21 @@ TEST_F(GroupOutcomeTest, OneThatWaitsIsCancelledAlone) {
   EXPECT_EQ(position(0), 100000);
 }
 
+// A driver before may have left it turning.
+TEST_F(GroupOutcomeTest, OneWithoutPointsSaysOfNoJointThatItStandsOfWhichNothingIsKnown) {
+  world.drives[1].silent = true;
+  ASSERT_TRUE(world.runUntil([&] { return !world.axis(1).state().feedback_valid; }, 2s));
+  const Time asked = world.now;
+  const Outcomes ended = send(world.trajectory("arm", {}));
+  ASSERT_TRUE(world.runUntil([&] { return !ended->empty(); }, 2s));
+  EXPECT_GE(world.now, asked + 400ms) << "it may come back";
+  EXPECT_EQ(ended->front().end, TrajectoryEnd::failed);
+  EXPECT_EQ(ended->front().code, TrajectoryErrorCode::goal_tolerance_violated);
+  EXPECT_EQ(ended->front().joint, "elbow");
+  EXPECT_THAT(ended->front().message,
+              testing::MatchesRegex("arm: whether elbow stands is not known: elbow .node 2.: .*"));
+}
+
 TEST_F(GroupOutcomeTest, OneWithoutPointsEndsWhenTheJointsStand) {
   send(1.0, -0.5, 1.0);
   world.run(500ms);
