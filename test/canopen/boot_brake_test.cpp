@@ -266,5 +266,14 @@ TEST_F(BootBrakeTest, asks_who_it_is_where_that_is_configured) {
                           kMode, kAskShownMode, kQuickStop, kAskStatusword));
 }
 
+// A reset of the communication stops no motor.
+TEST_F(BootBrakeTest, OneThatWasToldToResetIsStillToBeLookedAt) {
+  rests();
+  boot();
+  ASSERT_TRUE(node->seesToMotors());
+  node->command(NmtCommand::reset_communication, now);
+  EXPECT_TRUE(node->seesToMotors());
+}
+
 }  // namespace
 }  // namespace cia402::canopen

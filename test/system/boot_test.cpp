@@ -1,8 +1,7 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 // Whole robots whose drives boot as real ones do: late, twice, not at all, exchanged.
 #include "fieldbus/object.h"
-#include "sim/definition/drive_definition.h"
-#include "system/scene.h"
+#include "system/left_turning.h"
 
 namespace cia402 {
 namespace {
@@ -39,17 +38,9 @@ TEST(LateDrives, OneThatIgnoresTheResetAndIsStillEnabledIsStoppedAndConfigured) 
 /// while it is enabled.
 class LeftTurning : public testing::Test {
  protected:
-  static LoadedRobot load() {
-    LoadedRobot loaded = loadText(genericPair());
-    sim::DriveDefinition turns_on = *loaded.drives[0].definition;
-    turns_on.stops_outside_operational = false;
-    loaded.drives[0].definition = std::make_shared<const sim::DriveDefinition>(std::move(turns_on));
-    return loaded;
-  }
-  LeftTurning() : scene(load()) {}
+  LeftTurning() : scene(turningOn(loadText(genericPair()))) {}
   void write(fieldbus::ObjectId object, std::uint64_t value, unsigned size) {
-    EXPECT_EQ(scene.drive("left").dictionary().write(object, fieldbus::toBytes(value, size)), 0u)
-        << fieldbus::toString(object);
+    writeLeft(scene, object, value, size);
   }
   void lockWhileEnabled(fieldbus::ObjectId object) {
     sim::ObjectDictionary& dictionary = scene.drive("left").dictionary();
@@ -69,15 +60,7 @@ class LeftTurning : public testing::Test {
     write({0x1A00, 1}, 0x60640020, 4);  // the position alone
     write({0x1A00, 0}, 1, 1);
     write({0x1800, 1}, 0x181, 4);
-    write({0x6007, 0}, 0, 2);
-    write({0x6060, 0}, 3, 1);
-    write({0x6085, 0}, 6553600, 4);  // 50 turns/s^2
-    write({0x60FF, 0}, 2621440, 4);  // 20 turns/s
-    for (const std::uint64_t controlword : {0x06U, 0x07U, 0x0FU}) {
-      write({0x6040, 0}, controlword, 2);
-      scene.run(50ms);
-    }
-    scene.run(3s);
+    turnLeft(scene);
     for (const fieldbus::ObjectId object :
          {fieldbus::ObjectId{0x1005, 0}, {0x1006, 0}, {0x1019, 0}, {0x1800, 1}, {0x1A00, 0}}) {
       lockWhileEnabled(object);

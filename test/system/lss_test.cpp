@@ -1,8 +1,7 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 // Drives without node-IDs on whole robots.
-#include "fieldbus/object.h"
-#include "sim/definition/drive_definition.h"
 #include "system/disturbance.h"
+#include "system/left_turning.h"
 #include "system/lss_scene.h"
 
 namespace cia402 {
@@ -287,24 +286,10 @@ TEST(Lss, AShutdownAtTheStartIsOrderly) {
 // One NMT reset to all, as LSS needs it, would reach it first.
 TEST(Lss, WhatTurnsIsStoppedByAShutdownAtTheStart) {
   for (const Duration after : {60ms, 160ms, 300ms, 500ms, 700ms, 1000ms, 1200ms, 1400ms}) {
-    LoadedRobot loaded = loadText(genericPair({}, lssOf(111) + unconfigured(111)));
-    sim::DriveDefinition turns_on = *loaded.drives[0].definition;
-    turns_on.stops_outside_operational = false;
-    loaded.drives[0].definition = std::make_shared<const sim::DriveDefinition>(std::move(turns_on));
-    Scene scene(std::move(loaded));
+    Scene scene(turningOn(loadText(genericPair({}, lssOf(111) + unconfigured(111)))));
     scene.world().powerOn();
     scene.run(1s);
-    const auto write = [&](fieldbus::ObjectId object, std::uint64_t value, unsigned size) {
-      EXPECT_EQ(scene.drive("left").dictionary().write(object, fieldbus::toBytes(value, size)), 0u);
-    };
-    write({0x6007, 0}, 0, 2);
-    write({0x6060, 0}, 3, 1);
-    write({0x60FF, 0}, 262144, 4);  // 2 turns/s
-    for (const std::uint64_t controlword : {0x06U, 0x07U, 0x0FU}) {
-      write({0x6040, 0}, controlword, 2);
-      scene.run(50ms);
-    }
-    scene.run(3s);
+    turnLeft(scene);
     ASSERT_GT(scene.truth("left").velocity_turns, 1.0);
     scene.robot().startDriver();
     scene.run(after);
