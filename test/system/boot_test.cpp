@@ -108,6 +108,18 @@ TEST_P(LeftTurningAtAShutdown, IsStoppedBeforeTheDriverEnds) {
   EXPECT_FALSE(scene.truth("left").power_stage_on);
 }
 
+TEST_P(LeftTurningAtAShutdown, IsWaitedForThoughItAnswersLate) {
+  leaveTurning();
+  scene.drive("left").device().behaviour().sdo_latency = 40ms;
+  scene.robot().startDriver();
+  scene.run(std::chrono::microseconds(GetParam()));
+  scene.robot().network().beginShutdown(scene.now());
+  const auto ended = [&] { return scene.robot().network().shutDown(); };
+  ASSERT_TRUE(scene.runUntil(ended, 1810ms)) << scene.told();
+  scene.run(1s);
+  EXPECT_NEAR(scene.truth("left").velocity_turns, 0.0, 1e-3);
+}
+
 INSTANTIATE_TEST_SUITE_P(Microseconds, LeftTurningAtAShutdown,
                          testing::Values(0, 1000, 75000, 149900, 150100, 150500, 151000, 152000,
                                          155000, 160000, 200000, 400000, 700000),
