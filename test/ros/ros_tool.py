@@ -61,13 +61,15 @@ class Tool:
         return self._process.wait(DEADLINE)
 
     def stop(self):
-        """Ends it as Ctrl-C does."""
+        """Ends it as Ctrl-C does, or else by force: a node of rospy that is interrupted as it hands
+        over a message with a queue waits for ever, as its handler takes the lock it holds already."""
         if self._process.poll() is None:
             self._process.send_signal(signal.SIGINT)
         try:
             self._process.wait(DEADLINE)
-        finally:
+        except subprocess.TimeoutExpired:
             self._process.kill()
+            self._process.wait(DEADLINE)
 
     def complaints(self):
         """All that it has written to stderr, and lines of stdout that complain."""

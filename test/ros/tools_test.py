@@ -118,6 +118,7 @@ class Takers:
         self.process.stop()
         recorder = next(tool for tool in self.tools if tool.name == "recorder")
         recorder.stop()
+        self.assertEqual(recorder.wait_end(), 0, recorder.complaints())
         recorded = {}
         with rosbag.Bag(self.bag) as bag:
             for topic, message, _ in bag.read_messages():
