@@ -143,7 +143,7 @@ class MotorLimits final : public Oracle {
   }
 
   /// A drive that lacked a set-point stops as hard as it can, and makes it good with all its
-  /// effort; so does one that its limit switch lets go.
+  /// effort; so does one that its limit switch lets go. One that has a fault meanwhile brakes.
   bool catchesUp(const View& view, Axis& axis, const AxisFacts& facts,
                  const AxisTruth& truth) const {
     const bool held = axis.held != Time() && view.now - axis.held < kUnseen;
@@ -152,7 +152,8 @@ class MotorLimits final : public Oracle {
       axis.last = view.now + kLongestLag;
     }
     const double effort = facts.config->limits.effort.value_or(1e300);
-    if (view.now < axis.catches_up && std::fabs(truth.effort) > 0.5 * effort) {
+    const bool brakes = (truth.statusword & 0x4F) == 0x0F;  // in a fault reaction, by its ramp
+    if (view.now < axis.catches_up && (brakes || std::fabs(truth.effort) > 0.5 * effort)) {
       axis.catches_up = std::min(view.now + 50ms, axis.last);
     }
     return view.now < axis.catches_up;

@@ -296,7 +296,7 @@ void Node::Impl::stopUnasked(NmtState state, Time now) {
   if (boot.ignoresReset(state, now)) {
     last_stop.stopMotor();
   } else if (asked_in_vain) {
-    last_stop.stopBesides(now);
+    last_stop.stopBesides(state, now);
   }
 }
 

@@ -2,6 +2,8 @@
 #include "canopen/node/last_stop.h"
 
 #include <algorithm>
+#include <set>
+#include <utility>
 
 namespace cia402::canopen {
 namespace {
@@ -15,11 +17,13 @@ constexpr Duration kSlowInterval = std::chrono::milliseconds(100);  // ... and a
 constexpr Duration kPatience = std::chrono::milliseconds(500);
 constexpr Duration kEnough = std::chrono::seconds(3);
 constexpr Duration kSeldom = std::chrono::seconds(1);  // a slow drive has answered them by then
+constexpr Duration kNoAnswer = std::chrono::milliseconds(50);  // to an SDO; most take 10
 constexpr Duration kOnItsWay = std::chrono::milliseconds(10);  // a heartbeat of before the command
 
 }  // namespace
 
-void LastStop::remember(const PdoImage& image) {
+void LastStop::remember(PdoImage& image) {
+  rememberSetPoints(image);
   brakes_.clear();
   ramps_ = true;
   for (const BootBrake& brake : config_.brakes) {
@@ -36,6 +40,23 @@ void LastStop::remember(const PdoImage& image) {
     ramps_ = false;
     brakes_.push_back({brake.mode, fieldbus::toBytes(static_cast<std::uint64_t>(brake.brake), 1)});
   }
+}
+
+/// As they were sent: nothing but what stops the motor is new to the drive.
+void LastStop::rememberSetPoints(PdoImage& image) {
+  std::set<std::size_t> carriers;
+  for (const StartupWrite& write : config_.writes) {
+    const fieldbus::Slot slot = image.outputSlot(write.object);
+    if (!write.always || slot == fieldbus::kNoSlot || image.outputLeftOut(slot)) continue;
+    image.setOutput(slot, fieldbus::toUnsigned(write.data));
+    carriers.insert(image.carrierOf(slot));
+  }
+  std::vector<can::Frame> frames;
+  for (const std::size_t carrier : carriers) {
+    const PdoImage::Pdo& rpdo = image.rpdos()[carrier];
+    if (rpdo.sent_once && rpdo.carrier.empty()) image.pack(carrier, frames.emplace_back());
+  }
+  if (!frames.empty()) set_points_ = std::move(frames);  // else it was forgotten before
 }
 
 void LastStop::begin(Time now) {
@@ -84,11 +105,20 @@ bool LastStop::stopMotor() {
   return told;
 }
 
-void LastStop::stopBesides(Time now) {
+void LastStop::stopBesides(NmtState heard, Time now) {
+  if (besides_ == 0) besides_since_ = now;
+  if (now >= besides_since_ + kNoAnswer) stopByPdo(heard);
   if (besides_ >= kMotorStops && now < besides_at_ + kSeldom) return;
   ++besides_;
   besides_at_ = now;
   stopMotor();
+}
+
+void LastStop::stopByPdo(NmtState heard) {
+  const bool left = heard == NmtState::pre_operational;
+  if (set_points_.empty() || (!left && heard != NmtState::operational)) return;
+  if (left) sink_.send(nmtFrame(NmtCommand::start, config_.node_id));
+  for (const can::Frame& frame : set_points_) sink_.send(frame);
 }
 
 bool LastStop::insists(NmtState state, Time now) {

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "can/bus.h"
+#include "can/frame.h"
 #include "canopen/config.h"
 #include "canopen/nmt/nmt.h"
 #include "canopen/pdo/image.h"
@@ -23,8 +24,9 @@ class LastStop {
   LastStop(const NodeConfig& config, SdoClient& sdo, can::Sink& sink)
       : config_(config), sdo_(sdo), sink_(sink) {}
 
-  /// The node is about to be forgotten. @param image what it has told last
-  void remember(const PdoImage& image);
+  /// The node is about to be forgotten. @param image what it has told, and was sent, last; of the
+  /// outputs those that stop the motor are set.
+  void remember(PdoImage& image);
   /// No axis was told to be in a mode whose stop only lets its motor go, or may be in one untold.
   bool ramps() const { return ramps_; }
   /// The node was lost just now; its SDO transfers have ended.
@@ -45,12 +47,17 @@ class LastStop {
   /// that could be written.
   bool stopMotor();
   /// The same as often as its heartbeat comes while it is asked whether its motor turns; seldom
-  /// after a few times, for each makes the question wait for one more answer of the drive.
-  void stopBesides(Time now);
+  /// after a few times, for each makes the question wait for one more answer of the drive. One that
+  /// answers no SDO hears PDOs: after 50 ms it gets its last set-points once more, with what stops
+  /// the motor among them. @param heard by that heartbeat: one that has left operational by itself
+  /// has to be started (NMT) for that.
+  void stopBesides(NmtState heard, Time now);
 
  private:
   void restart(Time now);
   bool brake();
+  void rememberSetPoints(PdoImage& image);
+  void stopByPdo(NmtState heard);
 
   struct ModeWrite {
     ObjectId object;
@@ -63,8 +70,9 @@ class LastStop {
   bool ramps_ = false;
   unsigned braked_ = 0;  ///< since it began, or began again; said_ likewise
   unsigned said_ = 0;
+  std::vector<can::Frame> set_points_;  ///< its last, in which its motor is stopped
   unsigned besides_ = 0;
-  Time besides_at_{};
+  Time besides_at_{}, besides_since_{};
   Time next_ = kNever, last_{}, patience_end_{}, end_{};
 };
 
