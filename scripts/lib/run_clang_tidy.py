@@ -4,9 +4,9 @@
 
 Usage: run_clang_tidy.py REPOSITORY BUILD_DIRECTORY CACHE_DIRECTORY
 Files that passed are not checked again until they, a header of the repository they include, the
-compiler's arguments, .clang-tidy or clang-tidy change. Several files of a target are checked as one,
-for most of the time goes into the headers that they share, also where they were compiled as one;
-where that finds something, or they do not go together, each is checked by itself. Names that a source
+compiler's arguments, .clang-tidy or clang-tidy change. Many files of a target are checked as one, for
+most of the time goes into the headers that they share: files that declare no name twice. Where that
+finds something, or they do not go together, each half of them is, down to one file. Names that a source
 declares by `using` or `namespace x =` and does not use are found here: clang-tidy sees them in a file
 that is checked by itself only. Exit status 1 if a file fails.
 """
@@ -20,9 +20,16 @@ import shlex
 import subprocess
 import sys
 
-BATCH = 8  # files
+BATCH = 32  # files
 TARGET = re.compile(r"/([^/ ]+)\.dir/")
 DECLARED = re.compile(r"^[ \t]*(?:using (?:\w+::)+(\w+);|namespace (\w+) = [\w:]+;).*$", re.MULTILINE)
+# What a source declares for itself; a member of a class is no such name.
+OWN = re.compile(r"^namespace \{$(.*?)^\}  // namespace$", re.MULTILINE | re.DOTALL)
+CONSTANTS = re.compile(r"^(?:inline |static )?const(?:expr)? [^;]*;", re.MULTILINE)
+CONSTANT = re.compile(r"\b(k[A-Z]\w*)\s*[={\[(]")
+TYPE = re.compile(r"^(?:(?:class|struct|enum class|enum) (\w+)\b(?!;)|using (\w+) =)", re.MULTILINE)
+BORROWED = re.compile(r"^using (?:\w+::)+(\w+);", re.MULTILINE)
+FUNCTION = re.compile(r"^[A-Za-z][\w:<>,&*\[\] ]*[ &*](\w+)\(", re.MULTILINE)
 INCLUDE = re.compile(rb'^\s*#\s*include\s*"([^"]+)"', re.MULTILINE)
 
 
@@ -87,28 +94,49 @@ def check(repository, cache, batch):
     if unused:
         return unused
     configuration = f"--config-file={repository / '.clang-tidy'}"
-    if len(batch) > 1:
-        one = cache / f"batch_{os.getpid()}_{abs(hash(batch[0][0]))}.cpp"
-        one.write_text("".join(f'#include "{source}"\n' for source, _ in batch))
-        # A batch includes sources, which is what one of the checks is about.
-        passed, _ = tidy([configuration, "--checks=-bugprone-suspicious-include", str(one), "--"] +
-                         flags(batch[0][1]))
-        one.unlink()
-        if passed:
-            return [(source, True, "") for source, _ in batch]
-    return [(source,) + tidy([configuration, str(source), "--"] + flags(command))
-            for source, command in batch]
+    if len(batch) == 1:
+        ((source, command),) = batch
+        return [(source,) + tidy([configuration, str(source), "--"] + flags(command))]
+    one = cache / f"batch_{os.getpid()}_{abs(hash((batch[0][0], len(batch))))}.cpp"
+    one.write_text("".join(f'#include "{source}"\n' for source, _ in batch))
+    # A batch includes sources, which is what one of the checks is about.
+    passed, _ = tidy([configuration, "--checks=-bugprone-suspicious-include", str(one), "--"] +
+                     flags(batch[0][1]))
+    one.unlink()
+    if passed:
+        return [(source, True, "") for source, _ in batch]
+    half = len(batch) // 2
+    return check(repository, cache, batch[:half]) + check(repository, cache, batch[half:])
+
+
+def declared(source):
+    """Names that no other file of its batch may declare, rather too many, and those that it has from
+    another namespace, which each may have."""
+    text = "".join(OWN.findall(source.read_text(encoding="utf-8")))
+    text = re.sub(r"//.*", "", text)
+    names = {name for found in CONSTANTS.findall(text) for name in CONSTANT.findall(found)}
+    for either in TYPE.findall(text):
+        names.update(filter(None, either))
+    return names.union(FUNCTION.findall(text)), set(BORROWED.findall(text))
 
 
 def batches(todo):
-    """Lists of up to BATCH (source, command) of one target."""
+    """Lists of up to BATCH (source, command) of one target, that declare no name twice."""
     targets = {}
     for source, command in todo:
         match = TARGET.search(command)
-        targets.setdefault(match.group(1) if match else str(source), []).append((source, command))
-    for files in targets.values():
-        for at in range(0, len(files), BATCH):
-            yield files[at:at + BATCH]
+        found = targets.setdefault(match.group(1) if match else str(source), [])
+        names, borrowed = declared(source)
+        for files, taken, lent in found:
+            apart = not names & (taken | lent) and not borrowed & taken
+            if len(files) < BATCH and apart:
+                files.append((source, command))
+                taken |= names
+                lent |= borrowed
+                break
+        else:
+            found.append(([(source, command)], names, borrowed))
+    return [files for found in targets.values() for files, _, _ in found]
 
 
 def compiled_by(file):
