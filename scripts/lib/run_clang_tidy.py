@@ -27,8 +27,9 @@ DECLARED = re.compile(r"^[ \t]*(?:using (?:\w+::)+(\w+);|namespace (\w+) = [\w:]
 OWN = re.compile(r"^namespace \{$(.*?)^\}  // namespace$", re.MULTILINE | re.DOTALL)
 CONSTANTS = re.compile(r"^(?:inline |static )?const(?:expr)? [^;]*;", re.MULTILINE)
 CONSTANT = re.compile(r"\b(k[A-Z]\w*)\s*[={\[(]")
-TYPE = re.compile(r"^(?:(?:class|struct|enum class|enum) (\w+)\b(?!;)|using (\w+) =)", re.MULTILINE)
-BORROWED = re.compile(r"^using (?:\w+::)+(\w+);", re.MULTILINE)
+TYPE = re.compile(r"^(?:(?:class|struct|enum class|enum) (\w+)\b(?!;)|using (\w+) = (?!.*::\2;))",
+                  re.MULTILINE)
+BORROWED = re.compile(r"^using (?:\w+ = )?(?:\w+::)+(\w+);", re.MULTILINE)
 FUNCTION = re.compile(r"^[A-Za-z][\w:<>,&*\[\] ]*[ &*](\w+)\(", re.MULTILINE)
 INCLUDE = re.compile(rb'^\s*#\s*include\s*"([^"]+)"', re.MULTILINE)
 

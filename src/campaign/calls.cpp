@@ -19,6 +19,7 @@ namespace {
 
 using namespace std::chrono_literals;
 using drive::ProcedureKind;
+using Source = Permits::Source;
 
 struct Procedure {
   ProcedureKind kind;
@@ -138,7 +139,6 @@ void Calls::cancelHome() {
 }
 
 void Calls::judgeStopped(const Call& call, const bus::ProcedureReport& report) {
-  using Source = Permits::Source;
   if (!report.stopped) return;
   for (const bus::ProcedureReport::Axis& axis : report.axes) {
     const std::size_t i = axis.number;

@@ -84,6 +84,8 @@ class RunClangTidy(unittest.TestCase):
                 ("constexpr const char* kNames[] = {\n    \"a\", \"b\"};", "constexpr int kNames = 1;"),
                 ("struct Row {\n  int a;\n};", "enum class Row { a };"),
                 ("using Row = int;", "class Row {\n};"),
+                ("using Row = b::Line;", "using Row = c::Line;"),
+                ("using Row = b::Row;", "class Row {\n};"),
                 ("int turns(double a) { return 1; }", "bool turns(int a) {"),
                 ("using b::Quantity;\nQuantity a;", "struct Quantity {\n};")]
         for first, second in rows:
@@ -94,6 +96,7 @@ class RunClangTidy(unittest.TestCase):
 
     def test_puts_together_what_may_have_the_same_name(self):
         rows = [("using b::Quantity;\nQuantity a;", "using b::Quantity;\nQuantity c;"),
+                ("using Source = b::Source;\nSource a;", "using Source = b::Source;\nSource c;"),
                 ("struct Row {\n  int kMost = 1;\n  int turns(int a) { return a; }\n};",
                  "constexpr int kMost = 1;\nint turns(int a) {"),
                 ("// struct Row {", "struct Row {")]
