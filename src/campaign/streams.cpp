@@ -118,6 +118,11 @@ void Streams::accepted(std::size_t axis, double value) {
   if (session_.truths.empty()) return;
   const AxisFacts& facts = session_.stage.axes()[axis];
   const AxisTruth& truth = session_.truths[axis];
+  // What is sent to a bus that is cut off, before anybody can notice, leaves once that is back.
+  const Time cut_off = session_.conditions.axes[axis].cut_off;
+  if (session_.now() < cut_off) {
+    session_.permits.allow(axis, Source::stream, cut_off + facts.stopTime(facts.velocity));
+  }
   const drive::ModeSpec* const mode = session_.stage.modeOf(axis, truth.mode);
   if (mode == nullptr || mode->kind == drive::ControlKind::position) {
     const Duration way = timeOfWay(facts, value, session_.shown(axis));
