@@ -46,8 +46,10 @@ std::string written(const Matrix& matrix) {
 
 std::string gantryYaml(Random& random, const AxisPlan& side) {
   const double window = side.velocity * random.between(0.04, 0.1) + 0.001;
-  return "skew: {window: " + text(window) + ", homing: " + text(window * random.between(1.0, 4.0)) +
-         "}";
+  const double drawn = window * random.between(1.0, 4.0);
+  // One side may find its index pulse at once, and the other a turn later.
+  const double homing = side.homes_by_moving ? std::max(drawn, 1.1 * (side.turn + window)) : drawn;
+  return "skew: {window: " + text(window) + ", homing: " + text(homing) + "}";
 }
 
 std::string differentialYaml(Random& random, const AxisPlan& first, const AxisPlan& second,

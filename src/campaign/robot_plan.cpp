@@ -91,6 +91,7 @@ class AxisWriter {
     const double gear = linear_ ? random_.pick({1.0, 2.0, 5.0}) : random_.between(20.0, 160.0);
     const double lead = random_.pick({0.005, 0.01, 0.02});
     const double unit = (linear_ ? lead : kTwoPi) / gear;  // joint units a motor turn
+    axis_.turn = unit;
     add("counts_per_turn", std::to_string(static_cast<long>(counts)));
     add("gear_ratio", text(gear));
     if (linear_) add("lead", text(lead));

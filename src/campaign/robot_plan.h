@@ -18,6 +18,7 @@ struct AxisPlan {
   bool continuous = false, homing = false, homes_by_moving = false;
   double velocity = 1.0, acceleration = 4.0, effort = 1.0;
   double lower = -1.0, upper = 1.0, at = 0.0;  ///< its range, and where it stands at start
+  double turn = 0.0;                           ///< of the motor: from one index pulse to the next
   double command_timeout = 0.2;
   std::string mode;                      ///< at start
   std::optional<std::size_t> neighbour;  ///< the other axis in its drive
