@@ -42,6 +42,9 @@ class Permits {
 
   /// When something was commanded last that may move the axis.
   Time given(std::size_t axis) const;
+  Time given(std::size_t axis, Source source) const {
+    return axes_[axis].given[static_cast<std::size_t>(source)];
+  }
   Time until(std::size_t axis) const;
   Time until(std::size_t axis, Source source) const {
     return axes_[axis].until[static_cast<std::size_t>(source)];

@@ -326,7 +326,8 @@ void Trajectories::neverBegan(const Sent& sent) {
 bool Trajectories::judged(const Sent& sent, std::size_t axis) const {
   const auto follows = follows_.find(axis);
   // A trajectory that was taken is given after it has left.
-  const bool led = sent.stop && session_.permits.given(axis) > sent.at;
+  const bool led = (sent.stop && session_.permits.given(axis) > sent.at) ||
+                   session_.permits.given(axis, Source::homing) > sent.at;
   return follows != follows_.end() && follows->second == sent.id && !led &&
          session_.conditions.quiet(axis, session_.now());
 }
