@@ -96,21 +96,9 @@ void PositionLimiter::reset(const MotionState& commanded, Time now) {
 
 Result<void> PositionLimiter::command(double position) {
   if (Result<void> taken = take(position, ""); !taken) return taken;
-  command_ = withinReach(joint_.limits, *command_, outermost());
+  command_ = withinReach(joint_.limits, *command_, output_.position);
   fresh_ = true;
   return {};
-}
-
-/// Who comes back from beyond a limit does not turn: what lies outside of where it can stop is out
-/// of reach.
-double PositionLimiter::outermost() {
-  const double at = output_.position;
-  const JointLimits& limits = joint_.limits;
-  const bool above = limits.upper && at > *limits.upper;
-  const bool below = limits.lower && at < *limits.lower;
-  if (!smooth_ || (!above && !below)) return at;
-  smooth_->reset(output_);
-  return above ? std::min(at, smooth_->restsAt()) : std::max(at, smooth_->restsAt());
 }
 
 double PositionLimiter::streamVelocity(double dt) const {

@@ -76,7 +76,6 @@ class PositionLimiter : public SetpointLimiter {
   /// How fast the commands move, by the last two.
   double streamVelocity(double dt) const;
   void stepSmoothly(double dt);
-  double outermost();
 
   std::optional<double> previous_command_;  // the cycle before: its command, or where it held
   bool fresh_ = false;
