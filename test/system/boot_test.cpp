@@ -93,31 +93,30 @@ TEST_F(LeftTurning, IsStoppedBeforeAnythingElseIsWrittenAndBooted) {
 
 /// While a driver starts it is asked to end: it listens for another master, asks the drive for the
 /// first time, stops it, or boots it.
-class LeftTurningAtAShutdown : public LeftTurning, public testing::WithParamInterface<int> {};
+class LeftTurningAtAShutdown : public LeftTurning, public testing::WithParamInterface<int> {
+ protected:
+  void expectStoppedBeforeTheEnd() {
+    scene.robot().startDriver();
+    scene.run(std::chrono::microseconds(GetParam()));
+    scene.robot().network().beginShutdown(scene.now());
+    const auto ended = [&] { return scene.robot().network().shutDown(); };
+    ASSERT_TRUE(scene.runUntil(ended, 1810ms)) << scene.told();
+    scene.run(1s);
+    EXPECT_NEAR(scene.truth("left").velocity_turns, 0.0, 1e-3);
+  }
+};
 
 TEST_P(LeftTurningAtAShutdown, IsStoppedBeforeTheDriverEnds) {
   leaveTurning();
   ASSERT_NEAR(scene.truth("left").velocity_turns, 20.0, 0.1);
-  scene.robot().startDriver();
-  scene.run(std::chrono::microseconds(GetParam()));
-  scene.robot().network().beginShutdown(scene.now());
-  const auto ended = [&] { return scene.robot().network().shutDown(); };
-  ASSERT_TRUE(scene.runUntil(ended, 1810ms)) << scene.told();
-  scene.run(1s);
-  EXPECT_NEAR(scene.truth("left").velocity_turns, 0.0, 1e-3);
+  expectStoppedBeforeTheEnd();
   EXPECT_FALSE(scene.truth("left").power_stage_on);
 }
 
 TEST_P(LeftTurningAtAShutdown, IsWaitedForThoughItAnswersLate) {
   leaveTurning();
   scene.drive("left").device().behaviour().sdo_latency = 40ms;
-  scene.robot().startDriver();
-  scene.run(std::chrono::microseconds(GetParam()));
-  scene.robot().network().beginShutdown(scene.now());
-  const auto ended = [&] { return scene.robot().network().shutDown(); };
-  ASSERT_TRUE(scene.runUntil(ended, 1810ms)) << scene.told();
-  scene.run(1s);
-  EXPECT_NEAR(scene.truth("left").velocity_turns, 0.0, 1e-3);
+  expectStoppedBeforeTheEnd();
 }
 
 INSTANTIATE_TEST_SUITE_P(Microseconds, LeftTurningAtAShutdown,

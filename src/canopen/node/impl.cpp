@@ -80,7 +80,10 @@ void Node::Impl::beginBoot(BootProcedure::From from, const std::string& why, Tim
                            NmtCommand reset) {
   begun = true;
   takeOut(Health::booting, why);
-  if (from == BootProcedure::From::boot_up) sdo.serverRestarted();
+  if (from == BootProcedure::From::boot_up) {
+    sdo.serverRestarted();
+    last_stop.forgetSetPoints();
+  }
   notes.clear();
   half_floats_adopted = false;
   boot.stopUnasked(last_identity.has_value() && last_stop.ramps());

@@ -27,6 +27,8 @@ class LastStop {
   /// The node is about to be forgotten. @param image what it has told, and was sent, last; of the
   /// outputs those that stop the motor are set.
   void remember(PdoImage& image);
+  /// It has rebooted: its PDOs need not be those of its last set-points any more.
+  void forgetSetPoints() { set_points_.clear(); }
   /// No axis was told to be in a mode whose stop only lets its motor go, or may be in one untold.
   bool ramps() const { return ramps_; }
   /// The node was lost just now; its SDO transfers have ended.
