@@ -121,6 +121,8 @@ bool JerkLimiter::tooLow(double jerk, double dt, double reaction_s) const {
          extent.slowest < std::min(place > lower_ ? -velocity_ : -kStill, state_.velocity);
 }
 
+double JerkLimiter::restsAt() const { return rest(state_, acceleration_, jerk_, nullptr).position; }
+
 void JerkLimiter::brake(double dt) {
   double left = dt;
   for (JerkPiece piece : brakingPieces(state_, acceleration_, jerk_)) {

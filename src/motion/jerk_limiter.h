@@ -31,6 +31,8 @@ class JerkLimiter {
   /// Starts from there, with its acceleration.
   void reset(const MotionState& from) { state_ = from; }
   const MotionState& state() const { return state_; }
+  /// Where brake() brings it to rest.
+  double restsAt() const;
 
   /// Goes on for `dt` s, so as to come to rest relative to something that is at `position` then and
   /// moves with `velocity`. @return nothing but that was minded: the joint follows it

@@ -117,12 +117,24 @@ double PositionLimiter::approach(double dt) const {
   return way >= 0 ? std::min(way / dt, moving + relative) : std::max(way / dt, moving - relative);
 }
 
+/// Who comes back from beyond a limit does not turn: what lies outside of where it can stop is out
+/// of reach.
+double PositionLimiter::outermost() const {
+  const double at = output_.position;
+  const JointLimits& limits = joint_.limits;
+  if (limits.upper && at > *limits.upper) return std::min(at, smooth_->restsAt());
+  if (limits.lower && at < *limits.lower) return std::max(at, smooth_->restsAt());
+  return at;
+}
+
 /// What was followed and comes no more is brought to rest ahead; see step().
 void PositionLimiter::stepSmoothly(double dt) {
   const double from = output_.position;
   smooth_->reset(output_);
   if (command_ && (fresh_ || !met_)) {
-    const double moving = streamVelocity(dt);
+    const double told = *command_;
+    command_ = withinReach(joint_.limits, told, outermost());
+    const double moving = *command_ == told ? streamVelocity(dt) : 0;
     met_ = smooth_->approach(*command_, moving, dt) && moving != 0;
   } else {
     smooth_->brake(dt);

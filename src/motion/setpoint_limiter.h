@@ -76,6 +76,8 @@ class PositionLimiter : public SetpointLimiter {
   /// How fast the commands move, by the last two.
   double streamVelocity(double dt) const;
   void stepSmoothly(double dt);
+  /// With a limit of jerk: what it can be told to go to, if not within its limits.
+  double outermost() const;
 
   std::optional<double> previous_command_;  // the cycle before: its command, or where it held
   bool fresh_ = false;

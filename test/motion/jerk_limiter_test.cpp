@@ -158,9 +158,55 @@ TEST(JerkLimitedPosition, FromOutsideItOnlyComesBack) {
   EXPECT_NEAR(joint.last[2], 2.0, 1e-6);
 }
 
+// Whatever leads it back for a moment, what would lead it out again leaves it at rest.
+TEST(JerkLimitedPosition, OutsideItComesToRestWhenItIsToldToGoFurtherOutAgain) {
+  for (const double side : {1.0, -1.0}) {
+    for (int led = 1; led <= 60; ++led) {
+      for (const int told : {1, 2, 7}) {
+        SCOPED_TRACE(std::to_string(side * led) + " cycles, " + std::to_string(told));
+        Judged joint(smooth(), 2.2 * side);
+        for (int i = 0; i < led; ++i) joint.follow(1.9 * side);
+        for (int i = 0; i < told; ++i) joint.follow(3 * side);
+        double before = joint.last[2];
+        for (int i = 0; i < 400; ++i) {
+          const double next = joint.step();
+          EXPECT_LE(side * next, std::max(2.0, side * before)) << "within the limits it may return";
+          before = next;
+        }
+        EXPECT_EQ(joint.limiter.step(joint.now += kStep).velocity, 0);
+        EXPECT_EQ(joint.step(), before);
+        EXPECT_NEAR(before, *joint.limiter.goal(), 1e-9);
+      }
+    }
+  }
+}
+
 class EveryJerkSeed : public testing::TestWithParam<unsigned> {};
 INSTANTIATE_TEST_SUITE_P(Seeds, EveryJerkSeed, testing::Values(1U, 2U, 3U, 4U, 5U));
 constexpr int kStormCycles = 40000;
+
+TEST_P(EveryJerkSeed, FromOutsideItComesToRestWhateverItWasTold) {
+  test::Storm storm(GetParam());
+  for (int run = 0; run < 200; ++run) {
+    SCOPED_TRACE(run);
+    const double side = run % 2 == 0 ? 1 : -1;
+    PositionLimiter limiter(smooth());
+    Time now{};
+    limiter.reset({side * (2.3 + storm.random(0.3)), 0, 0}, now);
+    double outermost = 3;
+    const int told = static_cast<int>(40 + storm.random(40));
+    for (int i = 0; i < told + 2000; ++i) {
+      const auto command = i < told ? storm.command(4) : std::nullopt;
+      if (command) static_cast<void>(limiter.command(*command));
+      const double at = side * limiter.step(now += storm.cycle()).position;
+      ASSERT_LE(at, outermost + 1e-12) << i;
+      outermost = std::max(side > 0 ? 2.0 : 1.5, at);
+    }
+    const MotionState end = limiter.step(now += kStep);
+    EXPECT_EQ(end.velocity, 0);
+    EXPECT_NEAR(end.position, limiter.goal().value_or(end.position), 1e-9);
+  }
+}
 
 TEST_P(EveryJerkSeed, PositionsKeepAllLimits) {
   test::Storm storm(GetParam());
