@@ -44,7 +44,22 @@ TEST_F(LeftOperational, its_motor_is_told_to_stop_with_each_heartbeat_until_it_t
   EXPECT_THAT(sentWithHeartbeat(), Not(Contains(kMotorStop)));
 }
 
+// Its heartbeat made the boot begin, so it is there, and the question, or its answer, was lost.
+TEST_F(LeftOperational, it_is_asked_again_before_another_heartbeat_comes) {
+  leave("04");
+  EXPECT_EQ(peer.take(), Lines{kAskStatusword});
+  pass(milliseconds(299));
+  EXPECT_THAT(peer.take(), IsEmpty());
+  pass(milliseconds(1));
+  EXPECT_THAT(peer.take(), AllOf(Contains(kAskStatusword), Not(Contains("000 80 03"))));
+  pass(milliseconds(100));
+  EXPECT_THAT(peer.take(), AllOf(Contains(kAskStatusword), Not(Contains("000 80 03"))));
+  hear("583 4B 41 60 00 37 12 00 00");
+  EXPECT_THAT(peer.take(), Contains("603 40 61 60 00 00 00 00 00")) << "whether it pushes";
+}
+
 const char kStart[] = "000 01 03";
+const char kBrakeMode[] = "603 2F 60 60 00 09 00 00 00";
 const char kOn[] = "203 0F 00 44 33 22 11", kStopOn[] = "203 02 00 44 33 22 11";
 
 /// It has a set-point, and answers no SDO from when it leaves on.
@@ -139,16 +154,131 @@ TEST_F(LeftMute, one_that_was_sent_no_set_point_is_not_started) {
   EXPECT_EQ(sentWithHeartbeat(), Lines{kMotorStop});
 }
 
-TEST_F(LeftMute, in_a_mode_whose_stop_lets_go_it_is_not_started) {
+TEST_F(LeftMute, in_a_mode_whose_stop_lets_go_that_is_better_than_to_push_on) {
   goOn();
   node->receiveTpdo(0, test::frame("183 37 12 04"), now);
+  peer.forget(kStart);
   peer.forget(kMotorStop);
   peer.forget(kAskStatusword);
+  peer.forget(kBrakeMode);
   hear("703 7F");
-  pass(milliseconds(90));
+  pass(milliseconds(49));
   peer.take();
   hear("703 7F");
   EXPECT_THAT(peer.take(), IsEmpty());
+  pass(milliseconds(1));
+  hear("703 7F");
+  EXPECT_EQ(peer.take(), (Lines{kStart, kBrakeMode})) << "its mode is not in a PDO";
+  pass(milliseconds(50));
+  hear("703 05");
+  EXPECT_EQ(peer.take(), (Lines{kStopOn, kMotorStop}));
+}
+
+TEST_F(LeftMute, in_a_mode_that_nobody_knows_it_is_not_started) {
+  boot();
+  ASSERT_EQ(node->health(), Health::ready) << node->problem();
+  node->sendRpdos(now);
+  peer.take();
+  peer.forget(kAskStatusword);
+  hear("703 7F");
+  for (int i = 0; i < 3; ++i) {
+    pass(milliseconds(60));
+    hear("703 7F");
+  }
+  EXPECT_THAT(peer.take(), AllOf(Not(Contains(kStart)), Not(Contains(kMotorStop))));
+}
+
+/// Its RPDO carries the mode, and the velocity that the mode that brakes would take over at.
+class LeftMuteInTorque : public LeftOperational {
+ protected:
+  LeftMuteInTorque() {
+    config.pdos.at(0).entries = {
+        {{0x6040, 0}, 16, "controlword"}, {{0x6060, 0}, 8, "mode"}, {{0x60FF, 0}, 32, "velocity"}};
+    for (const auto& [asked, said] :
+         {std::pair{"603 40 00 16 00 00 00 00 00", "583 4F 00 16 00 03 00 00 00"},
+          std::pair{"603 40 00 16 02 00 00 00 00", "583 43 00 16 02 08 00 60 60"},
+          std::pair{"603 40 00 16 03 00 00 00 00", "583 43 00 16 03 20 00 FF 60"}}) {
+      peer.forget(asked);
+      peer.on(asked, said);
+    }
+  }
+  /// It was told 10000 for 60FFh last.
+  void push() {
+    boot();
+    ASSERT_EQ(node->health(), Health::ready) << node->problem();
+    node->receiveTpdo(0, test::frame("183 37 12 04"), now);
+    PdoImage& image = node->image();
+    image.setOutput(image.outputSlot({0x6040, 0}), 0x000F);
+    image.setOutput(image.outputSlot({0x6060, 0}), 4);
+    image.setOutput(image.outputSlot({0x60FF, 0}), 10000);
+    peer.take();
+    node->sendRpdos(now);
+    ASSERT_EQ(peer.take(), Lines{"203 0F 00 04 10 27 00 00"});
+    for (const char* line : {kStart, kMotorStop, kAskStatusword, kBrakeMode}) peer.forget(line);
+  }
+  const char* const kTakeOver = "203 0F 00 09 10 27 00 00";
+  const char* const kStopBraking = "203 02 00 09 10 27 00 00";
+};
+
+TEST_F(LeftMuteInTorque, the_mode_that_brakes_takes_over_and_stops_with_the_next_heartbeat) {
+  push();
+  hear("703 7F");
+  pass(milliseconds(50));
+  peer.take();
+  hear("703 7F");
+  EXPECT_EQ(peer.take(), (Lines{kStart, kBrakeMode, kTakeOver}));
+  pass(milliseconds(50));
+  hear("703 7F");  // the command was lost
+  EXPECT_EQ(peer.take(), (Lines{kStart, kStopBraking, kMotorStop}));
+  pass(milliseconds(50));
+  hear("703 05");
+  EXPECT_EQ(peer.take(), (Lines{kStopBraking, kMotorStop}));
+}
+
+TEST_F(LeftMuteInTorque, one_that_is_lost_is_told_that_mode_by_pdo_as_well) {
+  push();
+  pass(milliseconds(300));
+  ASSERT_EQ(node->health(), Health::lost);
+  EXPECT_EQ(peer.take(), (Lines{kBrakeMode, kTakeOver}));
+  pass(milliseconds(8));
+  EXPECT_EQ(peer.take(), (Lines{kBrakeMode, kTakeOver}));
+  pass(milliseconds(8));
+  EXPECT_EQ(peer.take(), Lines{kMotorStop});
+}
+
+TEST_F(LeftMuteInTorque, one_that_answers_within_50_ms_is_braked_by_sdo_alone) {
+  push();
+  hear("703 7F");
+  pass(milliseconds(45));
+  hear("583 4B 41 60 00 37 12 00 00");
+  peer.take();
+  pass(milliseconds(45));
+  hear("703 7F");
+  EXPECT_THAT(peer.take(), AllOf(Not(Contains(kStart)), Not(Contains(kTakeOver))));
+}
+
+TEST_F(LeftMuteInTorque, one_that_has_rebooted_is_not_taken_over) {
+  push();
+  hear("703 00");
+  ASSERT_EQ(node->health(), Health::booting);
+  for (int i = 0; i < 4; ++i) {
+    pass(milliseconds(90));
+    hear("703 7F");
+  }
+  EXPECT_THAT(peer.take(), AllOf(Not(Contains(kTakeOver)), Not(Contains(kStopBraking))));
+}
+
+TEST_F(LeftMuteInTorque, nor_is_one_whose_boot_after_that_is_given_up) {
+  push();
+  peer.forget("603 40 00 10 00 00 00 00 00");
+  hear("703 00");
+  node->boot(now, false);
+  settle();
+  for (int i = 0; i < 3; ++i) {
+    pass(milliseconds(90));
+    hear("703 7F");
+  }
+  EXPECT_THAT(peer.take(), AllOf(Not(Contains(kTakeOver)), Not(Contains(kStopBraking))));
 }
 
 // The answers to what nobody waits for come after the fence's own, and prove nothing.

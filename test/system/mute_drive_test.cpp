@@ -41,5 +41,23 @@ INSTANTIATE_TEST_SUITE_P(All, MuteDrive,
                          })),
                          familyModeName);
 
+class MuteDriveInTorque : public MuteDrive {};
+
+TEST_P(MuteDriveInTorque, IsBrakedByAModeOfVelocitiesAndStops) {
+  FamilyScene scene(familyJoint(GetParam()));
+  scene.sendOff();
+  ASSERT_NO_FATAL_FAILURE(leave(scene));
+  scene.run(500ms);  // as above, and a heartbeat for the mode
+  scene.run(600ms);
+  EXPECT_NEAR(scene.velocity("joint"), 0.0, 1e-3) << scene.told();
+  scene.expectStands(3s);
+  scene.inject("joint", "clear");
+  scene.mustSucceed(drive::ProcedureKind::recover);
+  scene.expectStands(500ms, 5e-4);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, MuteDriveInTorque, testing::ValuesIn(familyModesThat(isTorqueMode)),
+                         familyModeName);
+
 }  // namespace
 }  // namespace cia402

@@ -79,14 +79,17 @@ class Brake : public BootStep {
   };
 
   static bool isThere(const BootFindings& found) {
-    return found.tpdo_heard ||
-           (found.heartbeat_heard && found.heartbeat_state != NmtState::stopped);
+    return found.tpdo_heard || (found.heartbeat_heard && !isMute(found));
+  }
+  static bool isMute(const BootFindings& found) {
+    return found.heartbeat_heard && found.heartbeat_state == NmtState::stopped;
   }
 
-  /// Its heartbeat or a TPDO says that it is there: the question, or its answer, was lost.
+  /// It is there, as its heartbeat or a TPDO says: the question, or its answer, was lost.
   bool asksAgain(const BootContext& boot) {
     const bool lost = boot.ticket->failure() == fieldbus::Transfer::Failure::timed_out;
-    return phase_ == Phase::state && lost && isThere(boot.found) && asked_again_++ < kQuickRetries;
+    const bool there = isThere(boot.found) || (boot.found.appeared && !isMute(boot.found));
+    return phase_ == Phase::state && lost && there && asked_again_++ < kQuickRetries;
   }
 
   /// One that answered nothing may be there since a moment ago: it is told once to stop, and has

@@ -51,7 +51,8 @@ struct BootFindings {
   std::optional<Node::Identity> identity;
   bool after_reset = false;      ///< its boot-up message was seen: it has just been reset
   bool boot_up_missed = false;   ///< it was told to reset, and no boot-up message came
-  bool heartbeat_heard = false;  ///< or an answer to guarding
+  bool appeared = false;         ///< the boot began because it was heard
+  bool heartbeat_heard = false;  ///< since then; or an answer to guarding
   NmtState heartbeat_state = NmtState::unknown;  ///< that it told last, ...
   Time heartbeat_at{};                           ///< ... and when
   bool tpdo_heard = false;                       ///< before it was told to start

@@ -54,7 +54,8 @@ void BootProcedure::start(From from, Time now, NmtState told, NmtCommand reset) 
   if (from == From::boot_up) boot_.vendor_known = false;  // another one may have been put there
   if (boot_.restore_pending && from == From::boot_up) boot_.restored = boot_.must_configure = true;
   boot_.restore_pending = false;
-  unheard_ = from == From::unknown || from == From::before_reset;
+  unheard_ = from != From::reset && from != From::boot_up;
+  boot_.found.appeared = from == From::heard;
   from_reset_ = !unheard_;
   if (unheard_) {
     boot_.reset_when_braked = from == From::before_reset;

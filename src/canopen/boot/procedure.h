@@ -22,7 +22,8 @@ class BootProcedure {
     reset,         ///< it was just told to reset: a boot-up message is due
     boot_up,       ///< its boot-up message came
     unknown,       ///< nothing: it is brought to pre-operational and asked whether it is there
-    before_reset,  ///< the same, but its communication is reset instead
+    heard,         ///< the same, but it is there: a heartbeat or an answer of it came just now
+    before_reset,  ///< as unknown, but its communication is reset instead
   };
 
   BootProcedure(const NodeConfig& config, const MasterConfig& master, SdoClient& sdo,

@@ -125,7 +125,7 @@ void Node::Impl::takeOutBy(NmtCommand command) {
 
 void Node::Impl::lose(const std::string& why, Time now) {
   sdo.cancelAll("the node is lost: " + why);
-  last_stop.remember(image);
+  if (health != Health::ready) last_stop.remember(image);  // else takeOut() does
   takeOut(Health::lost, why + ": check power and cable; it is configured again when it is back");
   last_stop.begin(now);
   retry.search(now, last_stop.over());
@@ -278,10 +278,10 @@ void Node::Impl::onHeartbeat(NmtState state, Time stamp, Time now) {
     takeOut(Health::failed, std::exchange(taken_out, {}));
   } else if (isAway(health)) {
     if (last_stop.insists(state, now)) return;
-    startBoot(BootProcedure::From::unknown, "", now);
+    startBoot(BootProcedure::From::heard, "", now);
   } else if (health == Health::ready && state != NmtState::operational &&
              state != NmtState::unknown) {
-    startBoot(BootProcedure::From::unknown,
+    startBoot(BootProcedure::From::heard,
               std::string("became ") + toString(state) +
                   " without our command: look for another NMT master or a reset; it is configured "
                   "again and stays disabled",
@@ -295,7 +295,7 @@ void Node::Impl::onHeartbeat(NmtState state, Time stamp, Time now) {
 /// for, nor answers, each of which may be lost.
 void Node::Impl::stopUnasked(NmtState state, Time now) {
   if (!last_identity) return;
-  const bool asked_in_vain = boot.asksForMotors(state) && last_stop.ramps();
+  const bool asked_in_vain = boot.asksForMotors(state);
   if (boot.ignoresReset(state, now)) {
     last_stop.stopMotor();
   } else if (asked_in_vain) {
@@ -370,7 +370,7 @@ void Node::Impl::runProbe(Time now) {
   if (!probe || !probe->done()) return;
   const SdoTicket answer = std::exchange(probe, {});
   if (answer->ok() || answer->failure() == fieldbus::Transfer::Failure::aborted_by_server) {
-    startBoot(BootProcedure::From::unknown, "", now);
+    startBoot(BootProcedure::From::heard, "", now);
   } else {
     retry.notFound(now);
   }

@@ -20,43 +20,64 @@ constexpr Duration kSeldom = std::chrono::seconds(1);  // a slow drive has answe
 constexpr Duration kNoAnswer = std::chrono::milliseconds(50);  // to an SDO; most take 10
 constexpr Duration kOnItsWay = std::chrono::milliseconds(10);  // a heartbeat of before the command
 
+/// By PDO, since the node has been started.
+bool isSent(const PdoImage& image, fieldbus::Slot slot) {
+  if (slot == fieldbus::kNoSlot || image.outputLeftOut(slot)) return false;
+  const PdoImage::Pdo& rpdo = image.rpdos()[image.carrierOf(slot)];
+  return rpdo.sent_once && rpdo.carrier.empty();
+}
+
+std::vector<can::Frame> packed(const PdoImage& image, const std::set<std::size_t>& rpdos) {
+  std::vector<can::Frame> frames;
+  for (const std::size_t rpdo : rpdos) image.pack(rpdo, frames.emplace_back());
+  return frames;
+}
+
 }  // namespace
 
 void LastStop::remember(PdoImage& image) {
-  rememberSetPoints(image);
   brakes_.clear();
-  ramps_ = true;
+  ramps_ = known_ = true;
+  std::vector<const BootBrake*> pushing_now;
   for (const BootBrake& brake : config_.brakes) {
     const auto& pushing = brake.pushing;
     if (pushing.empty()) continue;
     const fieldbus::Slot slot = image.inputSlot(brake.shown_mode);
     const bool told = slot != fieldbus::kNoSlot && image.input(slot).valid;
     if (!told) {
-      ramps_ = false;
+      ramps_ = known_ = false;
       continue;
     }
     const int mode = static_cast<std::int8_t>(image.input(slot).raw & 0xFFU);
     if (std::find(pushing.begin(), pushing.end(), mode) == pushing.end()) continue;
     ramps_ = false;
     brakes_.push_back({brake.mode, fieldbus::toBytes(static_cast<std::uint64_t>(brake.brake), 1)});
+    pushing_now.push_back(&brake);
   }
+  rememberSetPoints(image, pushing_now);
 }
 
-/// As they were sent: nothing but what stops the motor is new to the drive.
-void LastStop::rememberSetPoints(PdoImage& image) {
+/// As they were sent: nothing but what brakes and stops the motor is new to the drive.
+void LastStop::rememberSetPoints(PdoImage& image, const std::vector<const BootBrake*>& pushing) {
   std::set<std::size_t> carriers;
+  for (const BootBrake* brake : pushing) {
+    const fieldbus::Slot mode = image.outputSlot(brake->mode);
+    const fieldbus::Slot target = image.outputSlot(brake->target);  // the velocity it has had
+    if (!isSent(image, mode) || !isSent(image, target)) continue;
+    image.setOutput(mode, static_cast<std::uint64_t>(brake->brake));
+    carriers.insert(image.carrierOf(mode));
+  }
+  std::vector<can::Frame> takes_over = packed(image, carriers);
   for (const StartupWrite& write : config_.writes) {
     const fieldbus::Slot slot = image.outputSlot(write.object);
     if (!write.always || slot == fieldbus::kNoSlot || image.outputLeftOut(slot)) continue;
     image.setOutput(slot, fieldbus::toUnsigned(write.data));
-    carriers.insert(image.carrierOf(slot));
+    if (isSent(image, slot)) carriers.insert(image.carrierOf(slot));
   }
-  std::vector<can::Frame> frames;
-  for (const std::size_t carrier : carriers) {
-    const PdoImage::Pdo& rpdo = image.rpdos()[carrier];
-    if (rpdo.sent_once && rpdo.carrier.empty()) image.pack(carrier, frames.emplace_back());
-  }
-  if (!frames.empty()) set_points_ = std::move(frames);  // else it was forgotten before
+  std::vector<can::Frame> stops = packed(image, carriers);
+  if (stops.empty()) return;  // it was forgotten before
+  takes_over_ = std::move(takes_over);
+  set_points_ = std::move(stops);
 }
 
 void LastStop::begin(Time now) {
@@ -92,9 +113,11 @@ void LastStop::tick(Time now) {
 }
 
 bool LastStop::brake() {
+  if (brakes_.empty()) return false;
   bool told = false;
   for (const ModeWrite& write : brakes_) told = sdo_.post(write.object, write.data) || told;
-  return told;
+  for (const can::Frame& frame : takes_over_) sink_.send(frame);
+  return told || !takes_over_.empty();
 }
 
 bool LastStop::stopMotor() {
@@ -106,19 +129,26 @@ bool LastStop::stopMotor() {
 }
 
 void LastStop::stopBesides(NmtState heard, Time now) {
-  if (besides_ == 0) besides_since_ = now;
-  if (now >= besides_since_ + kNoAnswer) stopByPdo(heard);
+  if (!known_) return;
+  if (!asked_since_) asked_since_ = now;
+  const bool mute = now >= *asked_since_ + kNoAnswer;
+  if (!ramps_ && !mute) return;
+  const bool by_pdo = mute && startForPdos(heard);
+  if (!ramps_ && !std::exchange(taken_over_, true) && brake()) return;
+  if (by_pdo) {
+    for (const can::Frame& frame : set_points_) sink_.send(frame);
+  }
   if (besides_ >= kMotorStops && now < besides_at_ + kSeldom) return;
   ++besides_;
   besides_at_ = now;
   stopMotor();
 }
 
-void LastStop::stopByPdo(NmtState heard) {
+bool LastStop::startForPdos(NmtState heard) {
   const bool left = heard == NmtState::pre_operational;
-  if (set_points_.empty() || (!left && heard != NmtState::operational)) return;
+  if (set_points_.empty() || (!left && heard != NmtState::operational)) return false;
   if (left) sink_.send(nmtFrame(NmtCommand::start, config_.node_id));
-  for (const can::Frame& frame : set_points_) sink_.send(frame);
+  return true;
 }
 
 bool LastStop::insists(NmtState state, Time now) {

@@ -1,6 +1,7 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "can/bus.h"
@@ -17,7 +18,7 @@ namespace cia402::canopen {
 /// motor (the writes of StartupWrite::always, by SDO, no answer is waited for), as a stopped node
 /// takes no SDO any more and not every drive stops its motor on NMT stop; then NMT stop, quickly at
 /// first, for three seconds in all. Where that stop would only let the motor go (BootBrake), the
-/// mode that brakes comes first.
+/// mode that brakes comes first, by PDO as well where it is mapped.
 class LastStop {
  public:
   /// All must outlive it.
@@ -28,7 +29,10 @@ class LastStop {
   /// outputs those that stop the motor are set.
   void remember(PdoImage& image);
   /// It has rebooted: its PDOs need not be those of its last set-points any more.
-  void forgetSetPoints() { set_points_.clear(); }
+  void forgetSetPoints() {
+    takes_over_.clear();
+    set_points_.clear();
+  }
   /// No axis was told to be in a mode whose stop only lets its motor go, or may be in one untold.
   bool ramps() const { return ramps_; }
   /// The node was lost just now; its SDO transfers have ended.
@@ -37,6 +41,8 @@ class LastStop {
   void end() {
     next_ = kNever;
     besides_ = 0;
+    taken_over_ = false;
+    asked_since_.reset();
   }
   void tick(Time now);
   Time deadline() const { return next_; }
@@ -51,15 +57,18 @@ class LastStop {
   /// The same as often as its heartbeat comes while it is asked whether its motor turns; seldom
   /// after a few times, for each makes the question wait for one more answer of the drive. One that
   /// answers no SDO hears PDOs: after 50 ms it gets its last set-points once more, with what stops
-  /// the motor among them. @param heard by that heartbeat: one that has left operational by itself
-  /// has to be started (NMT) for that.
+  /// the motor among them. Where that would only let the motor go it is told nothing for 50 ms,
+  /// then the mode that brakes, and with the next heartbeat to stop; in a mode that is not known,
+  /// nothing at all. @param heard by that heartbeat: one that has left operational by itself has to
+  /// be started (NMT) for PDOs.
   void stopBesides(NmtState heard, Time now);
 
  private:
   void restart(Time now);
   bool brake();
-  void rememberSetPoints(PdoImage& image);
-  void stopByPdo(NmtState heard);
+  void rememberSetPoints(PdoImage& image, const std::vector<const BootBrake*>& pushing);
+  /// @return false: it has no PDOs that would stop it
+  bool startForPdos(NmtState heard);
 
   struct ModeWrite {
     ObjectId object;
@@ -69,12 +78,16 @@ class LastStop {
   SdoClient& sdo_;
   can::Sink& sink_;
   std::vector<ModeWrite> brakes_;  ///< of what turned as it was told last
-  bool ramps_ = false;
-  unsigned braked_ = 0;  ///< since it began, or began again; said_ likewise
+  bool ramps_ = false;             ///< the stop does; see ramps()
+  bool known_ = false;             ///< the modes of all axes are
+  unsigned braked_ = 0;            ///< since it began, or began again; said_ likewise
   unsigned said_ = 0;
-  std::vector<can::Frame> set_points_;  ///< its last, in which its motor is stopped
+  std::vector<can::Frame> takes_over_;  ///< its last set-points, but with the mode that brakes, ...
+  std::vector<can::Frame> set_points_;  ///< ... and these with its motor stopped
   unsigned besides_ = 0;
-  Time besides_at_{}, besides_since_{};
+  bool taken_over_ = false;  ///< by that mode, besides the questions
+  std::optional<Time> asked_since_;
+  Time besides_at_{};
   Time next_ = kNever, last_{}, patience_end_{}, end_{};
 };
 
