@@ -16,6 +16,8 @@ using Source = Permits::Source;
 
 constexpr double kShownAge = 0.03;     // s, of what the driver shows
 constexpr Duration kShownTime = 30ms;  // likewise
+// After a stall the time of trajectories goes on from rest, as the joints do.
+constexpr Duration kUpToSpeed = 500ms;
 constexpr Duration kRampEnds = 150ms;  // as in AxisFacts::stopTime
 constexpr double kRounded = 1e-6;      // s, of what the driver tells in digits
 constexpr double kArrived = 0.01;      // rad or m: how near the driver calls reached by itself
@@ -194,6 +196,7 @@ void Trajectories::send(const config::GroupConfig& group, Joints joints, Points 
   sent.axes = axesOf(joints);
   sent.joints = std::move(joints);
   sent.at = session_.now();
+  sent.stalled = session_.conditions.stalled;
   sent.base = sent.at + start.value_or(Duration());
   sent.goals = goalsOf(sent.joints, points);
   sent.has_start = start.has_value();
@@ -278,7 +281,9 @@ void Trajectories::stopped(const Sent& sent, std::size_t axis) {
 
 /// It has not begun yet, or not surely.
 bool Trajectories::waits(const Sent& sent) const {
-  return sent.has_start && sent.base + session_.lateFor() + kShownTime > session_.now();
+  const Duration stood = session_.conditions.stalled - sent.stalled;
+  const Duration late = stood > Duration() ? stood + kUpToSpeed : Duration();
+  return sent.has_start && sent.base + late + session_.lateFor() + kShownTime > session_.now();
 }
 
 /// One that waits leaves those that are before it to what they do.

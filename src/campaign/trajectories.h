@@ -56,6 +56,7 @@ class Trajectories {
     std::vector<std::size_t> axes;  ///< that move these joints
     std::vector<Goal> goals;        ///< of these joints
     Time at{};                      ///< when it left
+    Duration stalled{};             ///< Conditions::stalled at that time
     Time base{};                    ///< from which its points count, at the earliest
     Duration last{};                ///< time of the last point
     bool stop = false, has_start = false;
