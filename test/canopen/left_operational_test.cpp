@@ -257,18 +257,20 @@ TEST_F(LeftMuteInTorque, one_that_answers_within_50_ms_is_braked_by_sdo_alone) {
   EXPECT_THAT(peer.take(), AllOf(Not(Contains(kStart)), Not(Contains(kTakeOver))));
 }
 
-TEST_F(LeftMuteInTorque, one_that_has_rebooted_is_not_taken_over) {
+TEST_F(LeftMuteInTorque, one_that_has_booted_since_and_pushes_no_more_is_not_taken_over) {
   push();
-  hear("703 00");
-  ASSERT_EQ(node->health(), Health::booting);
-  for (int i = 0; i < 4; ++i) {
-    pass(milliseconds(90));
-    hear("703 7F");
-  }
-  EXPECT_THAT(peer.take(), AllOf(Not(Contains(kTakeOver)), Not(Contains(kStopBraking))));
+  peer.on(kAskStatusword, "583 4B 41 60 00 50 02 00 00");
+  peer.on(kMotorStop, "583 60 40 60 00 00 00 00 00");
+  peer.on(kStart, "703 05");
+  hear("703 7F");
+  ASSERT_EQ(node->health(), Health::ready) << node->problem();
+  node->receiveTpdo(0, test::frame("183 50 02 08"), now);
+  pass(milliseconds(300));
+  ASSERT_EQ(node->health(), Health::lost);
+  EXPECT_THAT(peer.take(), AllOf(Contains(kMotorStop), Not(Contains(kTakeOver))));
 }
 
-TEST_F(LeftMuteInTorque, nor_is_one_whose_boot_after_that_is_given_up) {
+TEST_F(LeftMuteInTorque, one_whose_boot_after_a_reboot_is_given_up_is_not_taken_over) {
   push();
   peer.forget("603 40 00 10 00 00 00 00 00");
   hear("703 00");
